@@ -1,0 +1,1 @@
+"""Lightproof: is a renderer's light right, and what does it cost?"""

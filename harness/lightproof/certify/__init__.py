@@ -1,0 +1,1 @@
+"""The reference engine: proven answers. Imports scenes and geometry, and nothing that estimates."""

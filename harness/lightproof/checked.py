@@ -1,0 +1,202 @@
+"""Dataclass fields that check themselves.
+
+A scene may come from a file, from another process or from a notebook; in each case the same rule has to hold and the
+same message has to come out. So every field states its rule where it is declared, and `Checked` applies all of them
+whenever an object is made.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+KEBAB_CASE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+
+
+class SceneError(ValueError):
+    """A scene that breaks the format: says where, what is wrong and what would be right."""
+
+    def __init__(self, where: str, problem: str):
+        super().__init__(f"{where}: {problem}" if where else problem)
+        self.where = where
+        self.problem = problem
+
+    def within(self, outer: str) -> SceneError:
+        """The same error, its place named from one level further out."""
+        return SceneError(f"{outer}.{self.where}" if self.where else outer, self.problem)
+
+
+class Checked:
+    """Base of frozen dataclasses whose fields carry a rule in their metadata."""
+
+    TAG: ClassVar[tuple[str, str]]
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):
+            try:
+                value = field.metadata["rule"](getattr(self, field.name))
+            except SceneError as error:
+                raise error.within(field.name) from None
+            object.__setattr__(self, field.name, value)
+        self.check()
+
+    def check(self) -> None:
+        """Rules that concern several fields at once; raises SceneError."""
+
+    def to_table(self) -> dict[str, Any]:
+        """The object as a scene file writes it: the class's own tag (`TAG`, such as ("type", "disk")), then the fields."""
+        values = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self))
+        return {**dict([self.TAG]), **{name: _plain(value) for name, value in values if value is not None}}
+
+
+def _plain(value: Any) -> Any:
+    match value:
+        case Checked():
+            return value.to_table()
+        case tuple():
+            return [_plain(item) for item in value]
+        case _:
+            return value
+
+
+def rule(check: Callable[[Any], Any], default: Any = dataclasses.MISSING) -> Any:
+    """A dataclass field whose value is replaced by `check(value)`, which raises SceneError on a bad one."""
+    return dataclasses.field(default=default, metadata={"rule": check})
+
+
+def shown(value: Any) -> str:
+    """A value as an error message shows it: short, and with nothing that a terminal would obey."""
+    text = ascii(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def to_number(value: Any) -> float:
+    """A finite binary64; integers are accepted, booleans and strings are not."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise SceneError("", f"{shown(value)} is not a number; give a finite number")
+    try:
+        value = float(value)
+    except OverflowError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise SceneError("", f"{value} is not finite; give a finite number")
+    return value
+
+
+def number(above: float = -math.inf, least: float = -math.inf, most: float = math.inf,
+           default: Any = dataclasses.MISSING) -> Any:
+    """A field for one number in (above, most] and [least, most]."""
+
+    def check(value: Any) -> float:
+        value = to_number(value)
+        if not (value > above and least <= value <= most):
+            low = f"greater than {above:g}" if above > -math.inf else f"at least {least:g}"
+            high = f" and at most {most:g}" if most < math.inf else ""
+            raise SceneError("", f"{value:g} is out of range; it must be {low}{high}")
+        return value
+
+    return rule(check, default)
+
+
+def to_vector(value: Any) -> tuple[float, float, float]:
+    """Three finite numbers."""
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise SceneError("", f"{shown(value)} is not a vector; give three numbers [x, y, z]")
+    return tuple(to_number(component) for component in value)
+
+
+def vector(default: Any = dataclasses.MISSING) -> Any:
+    """A field for a position [m]."""
+    return rule(to_vector, default)
+
+
+def to_direction(value: Any) -> tuple[float, float, float]:
+    """A vector with a direction; its length means nothing."""
+    value = to_vector(value)
+    if not any(value):
+        raise SceneError("", "[0, 0, 0] has no direction; give a vector that is not zero")
+    return value
+
+
+def direction(default: Any = dataclasses.MISSING) -> Any:
+    """A field for a direction of any length except zero."""
+    return rule(to_direction, default)
+
+
+def vectors(least: int, each: Callable[[Any], Any] = to_vector, default: Any = dataclasses.MISSING) -> Any:
+    """A field for a list of at least `least` vectors."""
+
+    def check(value: Any) -> tuple[tuple[float, float, float], ...] | None:
+        if value is None and default is None:
+            return None
+        if not isinstance(value, list | tuple) or len(value) < least:
+            raise SceneError("", f"{shown(value)} is not a list of at least {least} vectors [x, y, z]")
+        return tuple(indexed(each, value))
+
+    return rule(check, default)
+
+
+def indexed(check: Callable[[Any], Any], values: Any) -> list[Any]:
+    """`check` applied to each value; an error names the index."""
+    checked = []
+    for index, value in enumerate(values):
+        try:
+            checked.append(check(value))
+        except SceneError as error:
+            raise error.within(f"[{index}]") from None
+    return checked
+
+
+def choice(*accepted: Any, default: Any = dataclasses.MISSING) -> Any:
+    """A field that takes one of a few values."""
+
+    def check(value: Any) -> Any:
+        if not isinstance(value, str) or value not in accepted:
+            raise SceneError("", f"{shown(value)} is not accepted; give one of {', '.join(map(repr, accepted))}")
+        return value
+
+    return rule(check, default)
+
+
+def text(default: Any = dataclasses.MISSING) -> Any:
+    """A field for a line of text."""
+
+    def check(value: Any) -> str:
+        if not isinstance(value, str):
+            raise SceneError("", f"{shown(value)} is not text; give a string")
+        return value
+
+    return rule(check, default)
+
+
+def to_kebab(value: Any) -> str:
+    """An id in kebab-case."""
+    if not isinstance(value, str) or not KEBAB_CASE.fullmatch(value):
+        raise SceneError("", f"{shown(value)} is not an id; give lower-case words joined by hyphens, such as 'area-lamp'")
+    return value
+
+
+def identifier(default: Any = dataclasses.MISSING) -> Any:
+    """A field for an id in kebab-case."""
+    return rule(to_kebab, default)
+
+
+def to_count(value: Any, least: int = 0, most: int = 2**31 - 1) -> int:
+    """A whole number from `least` to `most`."""
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise SceneError("", f"{shown(value)} is not accepted; give a whole number from {least} to {most}")
+    return value
+
+
+def resolution(default: Any = dataclasses.MISSING) -> Any:
+    """A field for [columns, rows], each from 1 to 4096."""
+
+    def check(value: Any) -> tuple[int, int]:
+        if not isinstance(value, list | tuple) or len(value) != 2:
+            raise SceneError("", f"{shown(value)} is not a resolution; give [columns, rows]")
+        return tuple(indexed(lambda count: to_count(count, 1, 4096), value))
+
+    return rule(check, default)

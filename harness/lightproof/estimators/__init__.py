@@ -1,0 +1,1 @@
+"""The in-house estimators: one method a file."""

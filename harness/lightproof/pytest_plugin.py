@@ -1,0 +1,1 @@
+"""Fixtures and the gate for pytest: for this project and for other people's renderers."""

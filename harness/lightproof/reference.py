@@ -1,0 +1,89 @@
+"""The exact light of one scene: value and uncertainty of every film element, with provenance.
+
+`references/<id>.csv` holds case, element, value, uncertainty; `references/<id>.toml` holds, for each case, the scene's
+digest, the engines and how far they agree, and for the scene its formula and citations.
+"""
+
+from __future__ import annotations
+
+import csv
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lightproof.checked import shown
+from lightproof.scene import Scene
+
+
+class ReferenceError(ValueError):
+    """A reference that is missing, stale or broken: says which, where, and what would mend it."""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """`value` and `uncertainty` (n,) in the film's unit, row-major; `uncertainty` bounds |value - true value|."""
+
+    scene_id: str
+    case: str
+    value: np.ndarray
+    uncertainty: np.ndarray
+    engine: str
+    second_engine: str
+    agreement: float
+    formula: str
+    citations: tuple[str, ...]
+    scene_digest: str
+
+
+def read(folder: Path, scene: Scene) -> Reference:
+    """The reference of `scene` in a suite's references/ folder.
+
+    Raises ReferenceError where there is none, where it was made for another version of the scene, or where it is broken.
+    """
+    about = _about(folder / f"{scene.id}.toml")
+    case = about.get("cases", {}).get(scene.case)
+    if case is None:
+        raise ReferenceError(f"{folder / scene.id}.toml: no reference for case '{scene.case}'; run 'lightproof certify {scene.id}'")
+    if case["scene_digest"] != scene.digest:
+        raise ReferenceError(f"{folder / scene.id}.toml: the reference of case '{scene.case}' was made for another version of the"
+                             f" scene; run 'lightproof certify {scene.id}'")
+    value, uncertainty = _values(folder / f"{scene.id}.csv", scene)
+    return Reference(
+        scene_id=scene.id,
+        case=scene.case,
+        value=value,
+        uncertainty=uncertainty,
+        engine=case["engine"],
+        second_engine=case["second_engine"],
+        agreement=case["agreement"],
+        formula=about["formula"],
+        citations=tuple(about["citations"]),
+        scene_digest=case["scene_digest"],
+    )
+
+
+def _about(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ReferenceError(f"{path}: there is no reference for this scene; run 'lightproof certify {path.stem}'") from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ReferenceError(f"{path}: cannot be read: {error}") from None
+
+
+def _values(path: Path, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    try:
+        with path.open(encoding="utf-8", newline="") as lines:
+            rows = [row for row in csv.DictReader(lines) if row["case"] == scene.case]
+        elements = [int(row["element"]) for row in rows]
+        numbers = np.array([[float(row["value"]), float(row["uncertainty"])] for row in rows]).reshape(-1, 2)
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        raise ReferenceError(f"{path}: cannot be read: {shown(str(error))}; the columns are case, element, value, uncertainty") from None
+    if elements != list(range(scene.size)):
+        raise ReferenceError(f"{path}: case '{scene.case}' has {len(elements)} rows; it needs elements 0 to {scene.size - 1} in order")
+    if not np.isfinite(numbers).all() or (numbers[:, 1] < 0).any():
+        raise ReferenceError(f"{path}: case '{scene.case}' holds a value that is not finite or a negative uncertainty")
+    return numbers[:, 0], numbers[:, 1]

@@ -1,0 +1,39 @@
+"""Every method that the harness knows by name. A dict, no import-time magic: the class is imported in the worker."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Entry:
+    """`target` is module:class; methods with the same `worker` share a process; `extra` is what pip has to install."""
+
+    name: str
+    target: str
+    worker: str
+    extra: str = ""
+    nightly: bool = False
+
+
+def _ours(name: str, target: str, nightly: bool = False) -> Entry:
+    return Entry(name, f"lightproof.estimators.{target}", worker="lightproof", nightly=nightly)
+
+
+METHODS = {
+    entry.name: entry
+    for entry in (
+        _ours("analytic", "analytic:Analytic"),
+        _ours("riemann-area", "riemann_area:RiemannArea"),
+        _ours("riemann-hemisphere", "riemann_hemisphere:RiemannHemisphere"),
+        _ours("mc-area", "mc_area:McArea"),
+        _ours("mc-area/float64", "mc_area:McArea", nightly=True),
+        _ours("mc-hemisphere", "mc_hemisphere:McHemisphere"),
+        _ours("mc-cosine", "mc_cosine:McCosine"),
+        _ours("path", "path:Path"),
+        Entry("mitsuba", "lightproof.renderers.mitsuba:Mitsuba", worker="mitsuba", extra="mitsuba"),
+        Entry("mitsuba/scalar", "lightproof.renderers.mitsuba:Mitsuba", worker="mitsuba-scalar", extra="mitsuba", nightly=True),
+        Entry("cycles", "lightproof.renderers.cycles:Cycles", worker="cycles", extra="cycles"),
+        Entry("pyrender", "lightproof.renderers.pyrender:Pyrender", worker="pyrender", extra="pyrender"),
+    )
+}

@@ -1,0 +1,193 @@
+"""From a TOML file, or the table that it parses to, to a Scene; errors name file, field and what would be right."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Callable
+from dataclasses import MISSING, fields
+from pathlib import Path
+from typing import Any
+
+from lightproof import checked, geometry, scene
+from lightproof.checked import SceneError
+from lightproof.scene import Scene
+
+BASE = "base"
+MAX_BYTES = 1 << 20
+LIGHTS = {"area": scene.AreaLight, "point": scene.PointLight, "directional": scene.DirectionalLight}
+FILMS = {"plane": scene.PlaneFilm, "points": scene.PointsFilm, "camera": scene.CameraFilm}
+TOP = ("title", "tests", "tags", "max_bounces", "tolerance", "tolerance_scale", "light", "surface", "film")
+
+
+def read_cases(path: Path) -> dict[str, Scene]:
+    """Every case of a scene file, the base first. Raises SceneError, which names the file, on anything broken."""
+    try:
+        table = _parse(path)
+        cases = table.pop("cases", {})
+        if not isinstance(cases, dict):
+            raise SceneError("cases", 'give a table for each case, such as [cases.far]')
+        name = checked.to_kebab(path.stem)
+        read = {BASE: from_table(table, name, BASE)}
+        for case, changes in cases.items():
+            read[case] = _read_case(table, name, case, changes)
+        return read
+    except SceneError as error:
+        raise SceneError(str(path), str(error)) from None
+
+
+def _read_case(table: dict[str, Any], name: str, case: str, changes: Any) -> Scene:
+    try:
+        checked.to_kebab(case)
+        if not isinstance(changes, dict):
+            raise SceneError("", "give a table of fields to replace")
+        return from_table(_replaced(table, changes), name, case)
+    except SceneError as error:
+        raise error.within(f"cases.{case}") from None
+
+
+def _parse(path: Path) -> dict[str, Any]:
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise SceneError("", f"the file is larger than {MAX_BYTES} bytes; a scene is a small text")
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SceneError("", f"cannot be read: {error.strerror}; give the path of a scene file (.toml)") from None
+    except UnicodeDecodeError as error:
+        raise SceneError("", f"is not UTF-8 text (byte {error.start}); a scene file is TOML") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise SceneError("", f"is not TOML: {error}") from None
+
+
+def from_table(table: dict[str, Any], scene_id: str, case: str = BASE) -> Scene:
+    """A Scene from its table (as `Scene.to_table` gives it); raises SceneError."""
+    _only(table, TOP, required=("title", "max_bounces", "tolerance", "film"))
+    return Scene(
+        id=scene_id,
+        case=case,
+        title=_field(table, "title", _text),
+        tests=_field(table, "tests", _text, ""),
+        tags=_field(table, "tags", _tags, ()),
+        lights=_items(table, "light", _light),
+        surfaces=_items(table, "surface", lambda item: _build(scene.Surface, item, optional_tag=True)),
+        film=_field(table, "film", lambda film: _build(_kind(film, FILMS), film)),
+        max_bounces=_field(table, "max_bounces", _bounces),
+        tolerance=_field(table, "tolerance", _positive),
+        tolerance_scale=_field(table, "tolerance_scale", _scale, "max"),
+    )
+
+
+def _field(table: dict[str, Any], key: str, read: Callable[[Any], Any], default: Any = None) -> Any:
+    if key not in table:
+        return default
+    try:
+        return read(table[key])
+    except SceneError as error:
+        raise error.within(key) from None
+
+
+def _items(table: dict[str, Any], key: str, read: Callable[[Any], Any]) -> tuple[Any, ...]:
+    items = table.get(key, [])
+    if not isinstance(items, list):
+        raise SceneError(key, f"give an array of tables, [[{key}]]")
+    built = []
+    for index, item in enumerate(items):
+        label = item.get("id", index) if isinstance(item, dict) else index
+        try:
+            built.append(read(item))
+        except SceneError as error:
+            raise error.within(f"{key}.{label if isinstance(label, str) and label.isprintable() else index}") from None
+    return tuple(built)
+
+
+def _light(item: Any) -> scene.Light:
+    if isinstance(item, dict) and item.get("kind") == "environment":
+        special = scene.SunDisc if "half_angle" in item else scene.OvercastSky if "sky" in item else scene.Environment
+        return _build(special, item)
+    return _build(_kind(item, {**LIGHTS, "environment": None}), item)
+
+
+def _kind(item: Any, kinds: dict[str, Any], tag: str = "kind") -> type:
+    if not isinstance(item, dict):
+        raise SceneError("", f"{checked.shown(item)} is not a table")
+    kind = item.get(tag)
+    if not isinstance(kind, str) or kind not in kinds:
+        raise SceneError(tag, f"{checked.shown(kind)} is not accepted; give one of {', '.join(map(repr, kinds))}")
+    return kinds[kind]
+
+
+def _build(cls: type, item: Any, optional_tag: bool = False) -> Any:
+    """An object of a Checked class from its table; unknown and missing keys are errors."""
+    if not isinstance(item, dict):
+        raise SceneError("", f"{checked.shown(item)} is not a table")
+    tag, expected = cls.TAG
+    if optional_tag and item.get(tag, expected) != expected:
+        raise SceneError(tag, f"{checked.shown(item[tag])} is not accepted; give {expected!r}")
+    names = [field.name for field in fields(cls)]
+    _only(item, (tag, *names), required=[field.name for field in fields(cls) if field.default is MISSING])
+    values = {key: item[key] for key in names if key in item}
+    if "shape" in values:
+        values["shape"] = _field(values, "shape", lambda shape: _build(_kind(shape, geometry.SHAPES, "type"), shape))
+    return cls(**values)
+
+
+def _only(table: Any, known: tuple[str, ...], required: Any) -> None:
+    if not isinstance(table, dict):
+        raise SceneError("", f"{checked.shown(table)} is not a table")
+    for key in table:
+        if key not in known:
+            raise SceneError(checked.shown(key)[1:-1], f"is not a field here; the fields are {', '.join(known)}")
+    for key in required:
+        if key not in table:
+            raise SceneError(key, "is missing; it must be given")
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str) or not value.isprintable() or not value:
+        raise SceneError("", f"{checked.shown(value)} is not a line of text")
+    return value
+
+
+def _positive(value: Any) -> float:
+    value = checked.to_number(value)
+    if value <= 0:
+        raise SceneError("", f"{value:g} is out of range; it must be greater than 0")
+    return value
+
+
+def _scale(value: Any) -> str | float:
+    return value if value in ("max", "element") else _positive(value)
+
+
+def _bounces(value: Any) -> int | str:
+    return value if value == "all" else checked.to_count(value)
+
+
+def _tags(value: Any) -> tuple[str, ...]:
+    if not isinstance(value, list) or any(tag not in scene.TAGS for tag in value):
+        raise SceneError("", f"{checked.shown(value)} is not accepted; give a list of {', '.join(scene.TAGS)}")
+    return tuple(value)
+
+
+def _replaced(table: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    """A copy of the base table with fields replaced, each named by a dotted path such as light.lamp.radiance."""
+    table = copy.deepcopy(table)
+    for path, value in changes.items():
+        *parents, last = path.split(".")
+        place: Any = table
+        for name in parents:
+            place = _step(place, name, path)
+        if not isinstance(place, dict):
+            raise SceneError(checked.shown(path)[1:-1], "names no field; give a path such as light.<id>.radiance or film.origin")
+        place[last] = value
+    return table
+
+
+def _step(place: Any, name: str, path: str) -> Any:
+    if isinstance(place, dict) and name in place:
+        return place[name]
+    if isinstance(place, list):
+        for item in place:
+            if isinstance(item, dict) and item.get("id") == name:
+                return item
+    raise SceneError(checked.shown(path)[1:-1], f"there is no {checked.shown(name)} in the base scene")

@@ -1,0 +1,66 @@
+"""One measurement asked for (Trial) and what came of it (Result)."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+
+class Status(StrEnum):
+    """How a trial ended."""
+
+    OK = "ok"
+    UNSUPPORTED = "unsupported"
+    ERROR = "error"
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One film asked for: `samples` per element, one of several `replicate`s with independent seeds."""
+
+    scene: str
+    case: str
+    scene_digest: str
+    method: str
+    samples: int
+    replicate: int
+    run_seed: int = 0
+
+    @property
+    def key(self) -> str:
+        """SHA-256 of the fields: the same trial has the same key in every run and in any order."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+
+    @property
+    def seed(self) -> int:
+        """A seed in [1, 2^31 - 1], derived from the key (some renderers take no zero and no 32nd bit)."""
+        return int(self.key[:16], 16) % (2**31 - 1) + 1
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of a trial. `film` (n,) and `variance` (n,) [unit squared; that of the element's value, already divided by
+    samples] are row-major; `quantization` is half a step of the output [unit], (n,) or 0; `samples` is what was really
+    spent per element; `seconds` has the phases setup, compile and render."""
+
+    trial: Trial
+    status: Status
+    film: np.ndarray | None = None
+    variance: np.ndarray | None = None
+    quantization: np.ndarray | float = 0.0
+    samples: int = 0
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    version: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    precision: str = ""
+    deterministic: bool = False
+    samples_lights: bool = False
+    threads: int = 1
+    peak_memory_mb: float = 0.0
+    message: str = ""
