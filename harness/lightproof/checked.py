@@ -26,7 +26,8 @@ class SceneError(ValueError):
 
     def within(self, outer: str) -> SceneError:
         """The same error, its place named from one level further out."""
-        return SceneError(f"{outer}.{self.where}" if self.where else outer, self.problem)
+        dot = "." if self.where and not self.where.startswith("[") else ""
+        return SceneError(f"{outer}{dot}{self.where}", self.problem)
 
 
 class Checked:

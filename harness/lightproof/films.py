@@ -24,9 +24,8 @@ def write(path: Path, grid: tuple[int, int], channels: Mapping[str, np.ndarray],
     for name, values in channels.items():
         values = np.asarray(values, float)
         planes[name] = values.astype(np.float32)
-        residual = (values - planes[name]).astype(np.float32)
-        if name == "Y" and np.isfinite(residual).all() and residual.any():
-            planes["residual"] = residual
+        if name == "Y" and np.isfinite(planes[name]).all():
+            planes["residual"] = (values - planes[name]).astype(np.float32)
     images = {name: np.ascontiguousarray(plane.reshape(grid)) for name, plane in planes.items()}
     about = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, **header}
     partial = path.with_suffix(".partial")

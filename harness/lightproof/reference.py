@@ -43,13 +43,14 @@ def read(folder: Path, scene: Scene) -> Reference:
 
     Raises ReferenceError where there is none, where it was made for another version of the scene, or where it is broken.
     """
-    about = _about(folder / f"{scene.id}.toml")
+    path = folder / f"{scene.id}.toml"
+    about = _about(path)
     case = about.get("cases", {}).get(scene.case)
     if case is None:
-        raise ReferenceError(f"{folder / scene.id}.toml: no reference for case '{scene.case}'; run 'lightproof certify {scene.id}'")
+        raise ReferenceError(f"{path}: no reference for case '{scene.case}'; run 'lightproof certify {scene.id}'")
     if case["scene_digest"] != scene.digest:
-        raise ReferenceError(f"{folder / scene.id}.toml: the reference of case '{scene.case}' was made for another version of the"
-                             f" scene; run 'lightproof certify {scene.id}'")
+        raise ReferenceError(f"{path}: the reference of case '{scene.case}' was made for another version of the scene;"
+                             f" run 'lightproof certify {scene.id}'")
     value, uncertainty = _values(folder / f"{scene.id}.csv", scene)
     return Reference(
         scene_id=scene.id,
@@ -81,9 +82,11 @@ def _values(path: Path, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
         elements = [int(row["element"]) for row in rows]
         numbers = np.array([[float(row["value"]), float(row["uncertainty"])] for row in rows]).reshape(-1, 2)
     except (OSError, KeyError, TypeError, ValueError) as error:
-        raise ReferenceError(f"{path}: cannot be read: {shown(str(error))}; the columns are case, element, value, uncertainty") from None
+        raise ReferenceError(f"{path}: cannot be read: {shown(str(error))};"
+                             " the columns are case, element, value, uncertainty") from None
     if elements != list(range(scene.size)):
-        raise ReferenceError(f"{path}: case '{scene.case}' has {len(elements)} rows; it needs elements 0 to {scene.size - 1} in order")
+        raise ReferenceError(f"{path}: case '{scene.case}' has {len(elements)} rows;"
+                             f" it needs elements 0 to {scene.size - 1} in order")
     if not np.isfinite(numbers).all() or (numbers[:, 1] < 0).any():
         raise ReferenceError(f"{path}: case '{scene.case}' holds a value that is not finite or a negative uncertainty")
     return numbers[:, 0], numbers[:, 1]

@@ -77,7 +77,8 @@ class Environment(Checked):
 
 @dataclass(frozen=True)
 class SunDisc(Checked):
-    """A distant disc of `radiance` [W/(m2 sr)] within `half_angle` [degrees] of where it comes from; `direction` is that of travel."""
+    """A distant disc of `radiance` [W/(m2 sr)] within `half_angle` [degrees] around where its light comes from;
+    `direction` is that of travel."""
 
     TAG = ("kind", "environment")
 
@@ -232,7 +233,7 @@ class Scene:
         for duplicate in {name for name in ids if ids.count(name) > 1}:
             raise SceneError("id", f"'{duplicate}' names two things; ids must differ")
         if self.max_bounces == "all" and any(_never_ends(surface) for surface in self.surfaces):
-            raise SceneError("max_bounces", 'a closed surface of reflectance 1 never loses light; give a finite number instead of "all"')
+            raise SceneError("max_bounces", 'a closed surface of reflectance 1 never loses light; give a number instead of "all"')
         object.__setattr__(self, "digest", _digest(self))
 
     def to_table(self) -> dict[str, Any]:

@@ -29,7 +29,8 @@ class Suite:
     def cases(self, scene_id: str) -> dict[str, Scene]:
         """Every case of one scene, the base first. Raises SceneError."""
         if scene_id not in self.ids:
-            raise SceneError("", f"there is no scene {shown(scene_id)}; the scenes are {', '.join(self.ids)}, or give the path of a .toml file")
+            known = ", ".join(self.ids)
+            raise SceneError("", f"there is no scene {shown(scene_id)}; give one of {known}, or the path of a .toml file")
         return scene_file.read_cases(self.root / "scenes" / f"{scene_id}.toml")
 
     def scene(self, name: str) -> Scene:

@@ -1,0 +1,66 @@
+"""A suite is any folder with scenes/ and references/."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+
+from lightproof import suite
+from lightproof.checked import SceneError
+from lightproof.reference import ReferenceError
+
+TWELVE = {"disk-blocker", "disk-light", "knife-edge", "occluded-square", "off-centre-point-in-sphere", "point-light",
+          "sphere-furnace", "sphere-light", "square-light", "square-light-seen", "triangle-light", "white-furnace-plane"}
+
+
+def test_the_default_suite_has_the_twelve_scenes():
+    assert set(suite.default().ids) >= TWELVE
+
+
+def test_no_scene_uses_ones_that_hide_cancelled_factors():
+    """Radiance and intensity are awkward numbers, so that a factor applied twice or not at all shows."""
+    for scene in suite.default().scenes():
+        values = [value for item in (*scene.lights, *scene.surfaces) for key, value in item.to_table().items()
+                  if key in ("radiance", "intensity", "irradiance", "zenith_radiance")]
+        assert any(value != round(value) for value in values), scene.name
+
+
+@pytest.mark.parametrize("scene", suite.default().scenes(), ids=lambda scene: scene.name)
+def test_every_scene_says_what_it_tests_and_has_a_reference_far_under_its_tolerance(scene):
+    reference = suite.default().reference(scene)
+    assert scene.tests and scene.tags
+    scale = abs(reference.value).max() if scene.tolerance_scale == "max" else 1.0
+    assert reference.uncertainty.max() <= scene.tolerance * scale / 1000
+
+
+def test_users_files_are_found_beside_their_references(tmp_path):
+    root = suite.default().root
+    (tmp_path / "scenes").mkdir()
+    shutil.copy(root / "scenes" / "point-light.toml", tmp_path / "scenes" / "mine.toml")
+    scene, home = suite.find(f"{tmp_path}/scenes/mine.toml:near", suite.default())
+    assert (scene.id, scene.case, home.root) == ("mine", "near", tmp_path)
+    with pytest.raises(ReferenceError, match="certify"):
+        home.reference(scene)
+
+
+def test_unknown_scenes_cases_and_folders_say_what_there_is(tmp_path):
+    with pytest.raises(SceneError, match="square-light"):
+        suite.default().scene("round-light")
+    with pytest.raises(SceneError, match="near"):
+        suite.default().scene("square-light:nearer")
+    with pytest.raises(SceneError, match="no suite"):
+        _ = suite.Suite(tmp_path).ids
+
+
+def test_a_stale_reference_is_refused(tmp_path):
+    """A scene that was edited after its reference was made must not be judged by it."""
+    root = suite.default().root
+    for folder in ("scenes", "references"):
+        (tmp_path / folder).mkdir()
+        for path in (root / folder).glob("point-light.*"):
+            shutil.copy(path, tmp_path / folder)
+    file = tmp_path / "scenes" / "point-light.toml"
+    file.write_text(file.read_text().replace("2.9", "2.91"))
+    with pytest.raises(ReferenceError, match="another version"):
+        suite.Suite(tmp_path).reference(suite.Suite(tmp_path).scene("point-light"))
