@@ -17,7 +17,7 @@ LAYERS = [
     {"trial", "reference", "films", "method"},
     {"suite", "certify", "estimators"},
     {"renderers"},
-    {"store", "diagnose"},
+    {"store", "diagnose", "ladder"},
     {"verdict"},
     {"runner"},
     {"reporting"},
