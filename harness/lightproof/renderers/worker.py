@@ -1,0 +1,162 @@
+"""The child process in which methods live: answers JSON lines over two inherited pipes.
+
+Each request names an operation of `Host` and its arguments; each answer is a table, with `error` where a method raised.
+A worker sees scenes and never a reference. It dies with the harness, and it leaves through `os._exit`, because some
+renderers crash while they are torn down.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import importlib
+import importlib.util
+import json
+import os
+import resource
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lightproof import films, radiometry, scene_file
+from lightproof.method import Method, Rendering, Unavailable
+from lightproof.scene import Scene
+
+PR_SET_PDEATHSIG = 1
+
+
+def load(target: str) -> type[Method]:
+    """The class that `module:Class` or `path/to/file.py:Class` names. Raises ImportError, AttributeError, OSError."""
+    where, _, name = target.rpartition(":")
+    if not where.endswith(".py"):
+        return getattr(importlib.import_module(where), name)
+    spec = importlib.util.spec_from_file_location(Path(where).stem, where)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return getattr(module, name)
+
+
+class Host:
+    """The methods of this process and the scene that each has prepared."""
+
+    def __init__(self) -> None:
+        self._methods: dict[str, Method] = {}
+        self._scenes: dict[str, Scene] = {}
+
+    def open(self, method: str, target: str, threads: int) -> dict[str, Any]:
+        """What a method says about itself, or why it is unavailable."""
+        opened = load(target)(method, threads)
+        try:
+            opened.open()
+        except Unavailable as missing:
+            return {"unavailable": str(missing)}
+        self._methods[method] = opened
+        return {
+            "version": opened.version(),
+            "precision": opened.precision,
+            "deterministic": opened.deterministic,
+            "samples_lights": opened.samples_lights,
+        }
+
+    def prepare(self, method: str, scene_id: str, case: str, table: dict[str, Any]) -> dict[str, Any]:
+        """Seconds and settings of a prepared scene, or why it is unsupported."""
+        scene, opened = scene_file.from_table(table, scene_id, case), self._methods[method]
+        reason = opened.unsupported(scene)
+        if reason is not None:
+            return {"unsupported": reason}
+        start = time.perf_counter()
+        named = opened.prepare(scene)
+        seconds = phases(named, time.perf_counter() - start, rest="setup")
+        self._scenes[method] = scene
+        return {"seconds": seconds, "settings": dict(opened.settings())}
+
+    def render(self, method: str, samples: int, seed: int, film: str) -> dict[str, Any]:
+        """One film of the prepared scene, written to the path `film`."""
+        opened, scene = self._methods[method], self._scenes[method]
+        forget_peak_memory()
+        start = time.perf_counter()
+        rendering = opened.render(samples, seed)
+        seconds = phases(rendering.seconds, time.perf_counter() - start, rest="render")
+        header = {"method": method, "method_version": opened.version(), "samples": str(rendering.samples), "seed": str(seed)}
+        films.write(Path(film), scene.film.grid, channels(rendering, scene.size), {**about(scene), **header})
+        return {"samples": int(rendering.samples), "seconds": seconds, "peak_memory_mb": peak_memory_mb()}
+
+
+def phases(named: Mapping[str, float], elapsed: float, rest: str) -> dict[str, float]:
+    """Seconds by phase: those that the method names, and the rest of what the clock says."""
+    others = {phase: float(seconds) for phase, seconds in (named or {}).items() if phase != rest}
+    return {**others, rest: max(0.0, elapsed - sum(others.values()))}
+
+
+def channels(rendering: Rendering, size: int) -> dict[str, np.ndarray]:
+    """The arrays of a rendering, (n,) each. Raises FilmError where one is misshapen."""
+    given = {"Y": rendering.film, "variance": rendering.variance}
+    if np.any(rendering.quantization):
+        given["quantization"] = np.broadcast_to(rendering.quantization, (size,))
+    for name, values in given.items():
+        if values is not None and np.shape(values) != (size,):
+            raise films.FilmError(f"the film's {name} has shape {np.shape(values)}; it must be ({size},), row by row")
+    return {name: np.asarray(values, float) for name, values in given.items() if values is not None}
+
+
+def about(scene: Scene) -> dict[str, str]:
+    """What a film's header says of its scene."""
+    quantity = radiometry.QUANTITIES[scene.film.quantity]
+    return {"scene": scene.id, "case": scene.case, "digest": scene.digest, "quantity": quantity.name, "unit": quantity.unit}
+
+
+def forget_peak_memory() -> None:
+    """Start the peak anew, where the kernel lets us: a worker renders many scenes."""
+    with contextlib.suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5")
+
+
+def peak_memory_mb() -> float:
+    """Largest resident memory since `forget_peak_memory` [MB]."""
+    with contextlib.suppress(OSError, StopIteration, ValueError):
+        lines = Path("/proc/self/status").read_text().splitlines()
+        return int(next(line for line in lines if line.startswith("VmHWM")).split()[1]) * 1024 / 1e6
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / 1e6 if sys.platform == "darwin" else peak * 1024 / 1e6
+
+
+def answer(host: Host, request: dict[str, Any]) -> dict[str, Any]:
+    """What one request comes to; whatever a method raises is an answer too."""
+    try:
+        return getattr(host, request.pop("op"))(**request)
+    except Exception as error:
+        with contextlib.suppress(OSError):
+            traceback.print_exc()
+        return {"error": f"{type(error).__name__}: {error}"}
+
+
+def die_with(parent: int) -> None:
+    """Have the kernel kill this process when the harness dies, however it dies."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:
+        os._exit(1)
+
+
+def main(requests_fd: int, answers_fd: int, parent: int, file_limit: int) -> None:
+    """Answer until the pipe closes."""
+    die_with(parent)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (file_limit, file_limit))
+    for fd in (requests_fd, answers_fd):
+        os.set_inheritable(fd, False)
+    host = Host()
+    with os.fdopen(requests_fd) as requests, os.fdopen(answers_fd, "w") as answers:
+        for line in requests:
+            answers.write(json.dumps(answer(host, json.loads(line)), default=str) + "\n")
+            answers.flush()
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))
