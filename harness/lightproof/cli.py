@@ -1,5 +1,0 @@
-"""Command line."""
-
-
-def main() -> int:
-    raise NotImplementedError

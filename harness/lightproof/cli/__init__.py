@@ -1,0 +1,37 @@
+"""Command line: one module a command, each with `add_arguments(parser)` and `run(options) -> exit status`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from lightproof.checked import SceneError
+from lightproof.cli import doctor, listing, report, run
+from lightproof.cli.status import INCOMPLETE, USAGE, UsageError
+from lightproof.films import FilmError
+from lightproof.store import StoreError
+
+COMMANDS = {"run": run, "report": report, "list": listing, "doctor": doctor}
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the whole command line."""
+    whole = argparse.ArgumentParser(prog="lightproof", description="Is a renderer's light right, and what does it cost in time?")
+    commands = whole.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name, module in COMMANDS.items():
+        module.add_arguments(commands.add_parser(name, help=module.__doc__, description=module.__doc__))
+    return whole
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command. The exit status is 2 for bad input and 3 where the job could not be completed."""
+    options = parser().parse_args(arguments)
+    try:
+        return COMMANDS[options.command].run(options)
+    except (UsageError, SceneError, StoreError, FilmError) as error:
+        print(f"lightproof {options.command}: {error}", file=sys.stderr)
+        return USAGE
+    except KeyboardInterrupt:
+        print(f"lightproof {options.command}: interrupted", file=sys.stderr)
+        return INCOMPLETE

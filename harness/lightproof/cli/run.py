@@ -1,0 +1,174 @@
+"""render the suite, or some scenes with some methods, and record everything measured"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import math
+import secrets
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from datetime import UTC, datetime
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+
+from lightproof import store, suite
+from lightproof.cli import machine, selection
+from lightproof.cli.judging import Judge
+from lightproof.cli.progress import Display
+from lightproof.cli.status import DONE, FAILED, INCOMPLETE, UsageError
+from lightproof.method import Unavailable
+from lightproof.renderers.pool import MethodFailed, Pool
+from lightproof.renderers.process import WorkerDied
+from lightproof.renderers.registry import Entry
+from lightproof.runner import Cell, Runner
+from lightproof.scene import Scene
+from lightproof.store import Run, Store
+from lightproof.suite import Suite
+from lightproof.verdict import Outcome, Verdict
+
+RUNS = Path("reports/runs")
+PLAN = ("scenes", "methods", "tags", "budget", "cell_budget", "replicates", "threads", "seed", "out", "suite")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Scenes, methods, budgets."""
+    add = parser.add_argument
+    add("scenes", nargs="*", metavar="SCENE", help="id, id:case or path of a .toml file (default: every base case)")
+    add("--with", dest="methods", nargs="+", default=[], metavar="METHOD",
+        help="name, glob, module:Class or file.py:Class (default: each renderer's best configuration)")
+    add("--tags", nargs="+", default=[], metavar="TAG", help="scenes with one of these; nightly: every case, every method")
+    add("--budget", type=seconds, default=180.0, metavar="S", help="of the whole run (default: %(default)g s)")
+    add("--cell-budget", type=seconds, default=15.0, metavar="S", help="of a scene and method (default: %(default)g s)")
+    add("--replicates", type=count(2), default=16, metavar="N", help="films a step (default, and the rule's: %(default)s)")
+    add("--threads", type=count(1), default=machine.usable_cores(), metavar="N", help="default: all cores, %(default)s here")
+    add("--seed", type=count(0), default=0, metavar="N", help="another seed, other noise (default: %(default)s)")
+    add("--out", type=Path, default=RUNS, metavar="DIR", help="where the run's folder is made (default: %(default)s)")
+    add("--suite", type=Path, metavar="DIR", help="a folder with scenes/ and references/ (default: Lightproof's own)")
+    add("--resume", type=Path, metavar="RUN", help="carry on with the run in this folder")
+    add("--strict", action="store_true", help="exit 1 where a verdict is fail, 3 where one is undecided")
+
+
+def seconds(text: str) -> float:
+    """A time of the command line [s]."""
+    value = float(text)
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text} is out of range; give seconds greater than 0")
+    return value
+
+
+def count(least: int):
+    """A reader of whole numbers from `least`."""
+
+    def read(text: str) -> int:
+        value = int(text)
+        if not least <= value < 2**31:
+            raise argparse.ArgumentTypeError(f"{text} is out of range; give a whole number of at least {least}")
+        return value
+
+    read.__name__ = "whole number"
+    return read
+
+
+seconds.__name__ = "number of seconds"
+
+
+def run(options: argparse.Namespace) -> int:
+    """Make or resume a run, and sum it up."""
+    console = Console(highlight=False, soft_wrap=True)
+    if options.resume:
+        return _resume(options, console)
+    home = Suite(options.suite) if options.suite else suite.default()
+    scenes = selection.scenes(options.scenes, options.tags, home)
+    methods = selection.methods(options.methods, options.tags)
+    store.check_writable(options.out)
+    with Pool(options.threads) as pool:
+        versions = machine.versions() | _open(methods, pool, console)
+        record = store.create(options.out, _describe(options, scenes, methods, versions), list(scenes))
+        return _carry_out(record, pool, console, options.strict)
+
+
+def _resume(options: argparse.Namespace, console: Console) -> int:
+    changed = [name for name in PLAN if getattr(options, name) != getattr(defaults(), name)]
+    if changed:
+        raise UsageError(f"--resume carries on with the plan of the run; leave out {', '.join(changed)}")
+    record = store.open(options.resume)
+    with Pool(record.run.threads) as pool:
+        return _carry_out(record, pool, console, options.strict)
+
+
+def defaults() -> argparse.Namespace:
+    """The options of a run that was given none."""
+    parser = argparse.ArgumentParser()
+    add_arguments(parser)
+    return parser.parse_args([])
+
+
+def _open(methods: Iterable[Entry], pool: Pool, console: Console) -> dict[str, str]:
+    """Versions of the methods that start; says of the others what is wrong."""
+    versions = {}
+    for entry in methods:
+        try:
+            versions[entry.name] = pool.open(entry).version
+        except (Unavailable, MethodFailed, WorkerDied) as error:
+            console.print(f"[yellow]{escape(entry.name)}[/]: {escape(str(error))}")
+    return versions
+
+
+def _describe(options: argparse.Namespace, scenes: dict[Scene, Suite], methods: Iterable[Entry], versions: dict[str, str]) -> Run:
+    now = datetime.now(UTC)
+    digests = "".join(sorted(scene.digest for scene in scenes))
+    return Run(
+        id=f"{now:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}",
+        started=now.isoformat(timespec="seconds"),
+        suite_digest=hashlib.sha256(digests.encode()).hexdigest(),
+        machine=machine.description(),
+        threads=options.threads,
+        seed=options.seed,
+        versions=versions,
+        commit=machine.commit(),
+        options={
+            "budget": options.budget,
+            "cell_budget": options.cell_budget,
+            "replicates": options.replicates,
+            "tags": options.tags,
+            "methods": [asdict(entry) for entry in methods],
+            "suites": {scene.name: str(home.root.resolve()) for scene, home in scenes.items()},
+        },
+    )
+
+
+def _carry_out(record: Store, pool: Pool, console: Console, strict: bool) -> int:
+    plan, judge = record.run.options, Judge(record)
+    entries = [Entry(**entry) for entry in plan["methods"]]
+    cells = [Cell(scene, entry, plan["cell_budget"], plan["replicates"]) for scene in record.scenes for entry in entries]
+    try:
+        with Display(console) as display:
+            Runner(cells, plan["budget"], record, pool, judge.decide, display.show).run()
+    except KeyboardInterrupt:
+        console.print(f"interrupted; carry on with: lightproof run --resume {escape(str(record.folder))}")
+        return INCOMPLETE
+    verdicts = {cell.name: judge.judge(cell.results) for cell in cells if cell.results}
+    _sum_up(verdicts, console)
+    console.print(f"recorded in {escape(str(record.folder))}")
+    return exit_status([verdict.outcome for verdict in verdicts.values()], strict, complete=len(verdicts) == len(cells))
+
+
+def _sum_up(verdicts: dict[str, Verdict], console: Console) -> None:
+    for name, verdict in verdicts.items():
+        if verdict.outcome in (Outcome.FAIL, Outcome.ERROR):
+            console.print(f"[red]{verdict.outcome}[/] {escape(name)}: {escape(verdict.reason)}")
+    counts = Counter(verdict.outcome for verdict in verdicts.values())
+    console.print(", ".join(f"{counts[outcome]} {outcome}" for outcome in Outcome if counts[outcome]))
+
+
+def exit_status(outcomes: Sequence[Outcome], strict: bool, complete: bool) -> int:
+    """0 where the job is done, 3 where something broke; strictly 1 where something fails, 3 where anything else is not passed.
+    What a method cannot do counts neither way."""
+    if strict and Outcome.FAIL in outcomes:
+        return FAILED
+    unwanted = {Outcome.ERROR, Outcome.UNDECIDED, Outcome.NO_REFERENCE} if strict else {Outcome.ERROR}
+    return INCOMPLETE if (strict and not complete) or unwanted & set(outcomes) else DONE

@@ -1,0 +1,79 @@
+"""From what the command line names to scenes and methods."""
+
+from __future__ import annotations
+
+import fnmatch
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from lightproof import scene, suite
+from lightproof.cli.status import UsageError, unknown
+from lightproof.renderers.registry import METHODS, Entry
+from lightproof.scene import Scene
+from lightproof.scene_file import BASE
+from lightproof.suite import Suite
+
+NIGHTLY = "nightly"
+TARGET = re.compile(r"(?P<where>.+):(?P<cls>\w+)(?P<options>/.*)?")
+
+
+def methods(patterns: Sequence[str], tags: Sequence[str]) -> list[Entry]:
+    """The methods that `patterns` name: names, globs over names, or `module:Class` and `path/to/file.py:Class` of the user's
+    own; without patterns each method's best configuration, or every one for the tag nightly. Raises UsageError."""
+    if not patterns:
+        return [entry for entry in METHODS.values() if NIGHTLY in tags or not entry.nightly]
+    chosen = {entry.name: entry for pattern in patterns for entry in _matching(pattern)}
+    return list(chosen.values())
+
+
+def _matching(pattern: str) -> list[Entry]:
+    if target := TARGET.fullmatch(pattern):
+        return [_own(**target.groupdict())]
+    names = fnmatch.filter(METHODS, pattern)
+    if not names:
+        raise unknown("method", pattern, [*METHODS])
+    return [METHODS[name] for name in names]
+
+
+def _own(where: str, cls: str, options: str | None) -> Entry:
+    path = Path(where)
+    if where.endswith(".py") and not path.is_file():
+        raise UsageError(f"{where}: there is no such file; give the path of a Python file, such as my_renderer.py:MyRenderer")
+    stem, where = (path.stem, str(path.resolve())) if where.endswith(".py") else (where, where)
+    return Entry(f"{stem}:{cls}{options or ''}", f"{where}:{cls}", worker=f"{where}:{cls}")
+
+
+def scenes(names: Sequence[str], tags: Sequence[str], root: Suite) -> dict[Scene, Suite]:
+    """The scenes that `names` and `tags` choose, each with the suite that holds its reference.
+
+    `names` are ids (the base case), `id:case` or paths of scene files; without names the base case of every scene, or every
+    case for the tag nightly. Other tags keep the scenes that carry one of them. Raises UsageError, SceneError.
+    """
+    for tag in tags:
+        if tag not in scene.TAGS:
+            raise unknown("tag", tag, scene.TAGS)
+    found = dict(_find(name, root) for name in names) if names else {each: root for each in root.scenes()}
+    wanted = set(tags) - {NIGHTLY}
+    kept = {each: home for each, home in found.items() if (not wanted or wanted & set(each.tags)) and _due(each, names, tags)}
+    if not kept:
+        raise UsageError(f"no scene carries the tag {' or '.join(sorted(wanted))}; 'lightproof list' shows the tags of each")
+    _check_names(list(kept))
+    return kept
+
+
+def _due(each: Scene, names: Sequence[str], tags: Sequence[str]) -> bool:
+    return bool(names) or NIGHTLY in tags or (each.case == BASE and NIGHTLY not in each.tags)
+
+
+def _find(name: str, root: Suite) -> tuple[Scene, Suite]:
+    scene_id = name.partition(":")[0]
+    if ".toml" not in name and scene_id not in root.ids:
+        raise unknown("scene", scene_id, root.ids)
+    return suite.find(name, root)
+
+
+def _check_names(chosen: Sequence[Scene]) -> None:
+    names = [each.name for each in chosen]
+    for name in {name for name in names if names.count(name) > 1}:
+        raise UsageError(f"two different scenes are called {name}; rename the file of one")

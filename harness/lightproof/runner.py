@@ -1,0 +1,194 @@
+"""Climb the ladder of every (scene, method) until its verdict is decided or its budget is spent.
+
+The runner asks `decide` whether a cell's results decide it; it knows no reference and no rule. Time is counted in the
+seconds that the results themselves record, so a resumed run goes on exactly where it stopped.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from lightproof.renderers.pool import Pool
+from lightproof.renderers.registry import Entry
+from lightproof.scene import Scene
+from lightproof.store import Store
+from lightproof.trial import Result, Status, Trial
+
+FIRST_SAMPLES = 64
+FACTOR = 4
+MOST_SAMPLES = 2**30
+STEPS_FOR_A_SLOPE = 3
+SHORTEST_TIMEOUT = 30.0
+SLOWER_THAN_EXPECTED = 10
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What the runner may know of a verdict: whether it stands, and if not the samples per element that would decide it."""
+
+    decided: bool
+    samples_needed: int | None = None
+
+
+@dataclass
+class Cell:
+    """One method on one scene: its results so far by step of the ladder (samples per element), and what they decide.
+    `budget` [s] is what preparing and rendering may take; `replicates` is the number of films a step."""
+
+    scene: Scene
+    entry: Entry
+    budget: float
+    replicates: int
+    steps: dict[int, list[Result]] = field(default_factory=dict)
+    decision: Decision = Decision(False)
+
+    @property
+    def results(self) -> list[Result]:
+        """All results, step by step."""
+        return [result for step in self.steps.values() for result in step]
+
+    @property
+    def broken(self) -> bool:
+        """Whether the method cannot or did not do this scene: no further trial is worth its time."""
+        return any(result.status is not Status.OK for result in self.results)
+
+    @property
+    def seconds(self) -> float:
+        """What the cell has cost: every render, and the preparation of each step once."""
+        return sum(_preparation(step) + sum(_renders(step)) for step in self.steps.values())
+
+    @property
+    def height(self) -> int:
+        """Number of complete steps."""
+        return sum(len(step) >= self._films for step in self.steps.values())
+
+    @property
+    def next_samples(self) -> int:
+        """Samples per element of the first step that is not complete."""
+        return FIRST_SAMPLES * FACTOR**self.height
+
+    @property
+    def next_seconds(self) -> float:
+        """What completes the next step, judged by the films of that step (the first of them may compile, so not by it
+        alone), else by the step before; 0 where nothing was measured yet."""
+        step, before = self.steps.get(self.next_samples, []), self.steps.get(self.next_samples // FACTOR, [])
+        if len(step) > 1:
+            return min(_renders(step)) * (self._films - len(step))
+        return _preparation(before) + FACTOR * sum(_renders(before))
+
+    @property
+    def wants_more(self) -> bool:
+        """Whether another film would say something and its step fits into the cell's own budget."""
+        if self.broken or self.next_samples > MOST_SAMPLES or self.seconds + self.next_seconds > self.budget:
+            return False
+        return self.height < STEPS_FOR_A_SLOPE or not (self.decision.decided or self._hopeless)
+
+    @property
+    def timeout(self) -> float:
+        """Seconds after which a render counts as hanging."""
+        slowest = max(map(max, filter(None, map(_renders, self.steps.values()))), default=0.0)
+        return max(SHORTEST_TIMEOUT, self.budget, SLOWER_THAN_EXPECTED * FACTOR * slowest)
+
+    def next_trial(self, run_seed: int) -> Trial:
+        """The first trial of the ladder that is not recorded."""
+        samples, scene = self.next_samples, self.scene
+        done = {result.trial.replicate for result in self.steps.get(samples, [])}
+        replicate = next(number for number in range(len(done) + 1) if number not in done)
+        return Trial(scene.id, scene.case, scene.digest, self.entry.name, samples, replicate, run_seed)
+
+    def add(self, result: Result) -> None:
+        """Take up a result."""
+        self.steps.setdefault(result.trial.samples, []).append(result)
+
+    @property
+    def _films(self) -> int:
+        return 1 if any(result.deterministic for result in self.results) else self.replicates
+
+    @property
+    def _hopeless(self) -> bool:
+        step, cost, total = self.next_samples, self.next_seconds, self.seconds
+        while step < (self.decision.samples_needed or 0):
+            total += cost
+            step, cost = step * FACTOR, cost * FACTOR
+        return total + cost > self.budget
+
+
+def _renders(step: Sequence[Result]) -> list[float]:
+    return [result.seconds.get("render", 0.0) for result in step]
+
+
+def _preparation(step: Sequence[Result]) -> float:
+    return max((result.seconds.get("setup", 0.0) + result.seconds.get("compile", 0.0) for result in step), default=0.0)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a run stands: told before each step of a cell, and when it is over (`cell` None)."""
+
+    cell: Cell | None
+    finished: int
+    cells: int
+    seconds: float
+    budget: float
+
+
+class Runner:
+    """Runs cells, the cheapest undecided step first, and records each result as it comes.
+
+    `budget` [s] is that of all cells together, `decide` gets all results of one cell, `tell` hears of the progress. Raises
+    StoreError or OSError where the record cannot be written.
+    """
+
+    def __init__(self, cells: Sequence[Cell], budget: float, store: Store, pool: Pool,
+                 decide: Callable[[Sequence[Result]], Decision], tell: Callable[[Progress], None]):
+        self._cells = {(cell.scene.id, cell.scene.case, cell.entry.name): cell for cell in cells}
+        self._budget = budget
+        self._store = store
+        self._pool = pool
+        self._decide = decide
+        self._tell = tell
+        self._queue: list[tuple[bool, float, int, Cell]] = []
+
+    def run(self) -> list[Cell]:
+        """All cells with their results, once the budget is spent or nothing is left that is worth its time. What the store
+        already holds is taken up and not run again."""
+        for result in self._store.results():
+            self._cells[result.trial.scene, result.trial.case, result.trial.method].add(result)
+        for cell in self._cells.values():
+            self._judge(cell)
+        while self._queue:
+            _, cost, _, cell = heapq.heappop(self._queue)
+            if self._seconds + cost <= self._budget:
+                self._report(cell)
+                self._climb(cell)
+                self._judge(cell)
+        self._report(None)
+        return list(self._cells.values())
+
+    def _climb(self, cell: Cell) -> None:
+        """Complete one step of a cell's ladder, or stop where it breaks or turns out not to fit."""
+        height = cell.height
+        while cell.height == height and cell.wants_more:
+            trial = cell.next_trial(self._store.run.seed)
+            film = self._store.film_path(trial)
+            result = self._pool.render(cell.entry, cell.scene, trial, film, cell.timeout)
+            self._store.append(result)
+            cell.add(result)
+
+    def _judge(self, cell: Cell) -> None:
+        """Learn what a cell's results decide, and queue its next step if it wants one."""
+        if cell.steps:
+            cell.decision = self._decide(cell.results)
+        if cell.wants_more:
+            order = list(self._cells.values()).index(cell)
+            heapq.heappush(self._queue, (cell.decision.decided, cell.next_seconds, order, cell))
+
+    @property
+    def _seconds(self) -> float:
+        return sum(cell.seconds for cell in self._cells.values())
+
+    def _report(self, cell: Cell | None) -> None:
+        waiting = len(self._queue) + (cell is not None)
+        self._tell(Progress(cell, len(self._cells) - waiting, len(self._cells), self._seconds, self._budget))
