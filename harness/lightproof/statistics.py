@@ -5,13 +5,16 @@ A film is a row (n,) of elements, row-major; replicates are stacked as (R, n) an
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations, pairwise
-from math import ceil
+from math import ceil, comb
 
 import numpy as np
-from scipy.special import stdtrit
+from numpy.typing import ArrayLike
+from scipy.special import pdtrc, stdtrit
 
 TILES = 64
+CHANCE = 1e-4  # below which equal films are no coincidence
 
 
 def simultaneous_quantile(level: float, intervals: int, replicates: int) -> float:
@@ -48,90 +51,85 @@ def tile_means(values: np.ndarray, grid: tuple[int, int], most: int = TILES) -> 
 
 
 def repeats(films: np.ndarray) -> bool:
-    """Whether some, but not all, of the films (R, n) are the same bit for bit, and not by chance.
+    """Whether some, but not all, of the films (R, n) are the same bit for bit, and more of them than chance explains.
 
-    Noise with few values, such as counts of hits at a few points, makes two films equal by chance. Taking elements as
-    independent, the chance that two films agree is the product over elements of how often distinct films agree there.
+    Noise with few values, such as counts of hits at a few points, makes films equal by chance: two of them with the
+    product over elements, taken as independent, of how often distinct films agree there. The number of chance repeats
+    is nearly Poisson.
     """
     distinct = np.unique(films, axis=0)
     if len(distinct) in (1, len(films)):
         return False
-    pairs = len(distinct) * (len(distinct) - 1) / 2
     agreeing = sum((first == second).astype(int) for first, second in combinations(distinct, 2))
-    chance = np.exp(np.log(np.maximum(agreeing, 0.5) / pairs).sum())
-    return bool(chance * len(films) * (len(films) - 1) / 2 < 1e-3)
+    chance = np.exp(np.log(np.maximum(agreeing, 0.5) / comb(len(distinct), 2)).sum())
+    return bool(pdtrc(len(films) - len(distinct) - 1, chance * comb(len(films), 2)) < CHANCE)
 
 
 def variance_per_sample(films: np.ndarray, samples: float) -> tuple[float, float]:
     """Variance of one sample, pooled over the elements of replicates (R, n) [unit squared], and the standard error of its
     logarithm, by the delete-one jackknife over replicates (Efron 1982), for which elements may depend on one another.
 
-    NaN for fewer than three replicates; the variance of films without noise is 0 and the error of its logarithm NaN.
+    NaN for fewer than three replicates; the error is infinite where all the variance hangs on one replicate or there is none.
     """
     replicates = len(films)
     if replicates < 3:
         return np.nan, np.nan
-    squares = ((films - films.mean(axis=0)) ** 2).mean(axis=1)
-    variance = squares.sum() / (replicates - 1) * samples
-    without_one = squares.sum() - squares * replicates / (replicates - 1)
-    if not np.ptp(films, axis=0).any() or (without_one <= 0).any():
-        return (float(variance) if np.ptp(films, axis=0).any() else 0.0), np.nan
-    logs = np.log(without_one)
-    return float(variance), float(np.sqrt((replicates - 1) * logs.var()))
+    deviations = films - films[0]
+    squares = ((deviations - deviations.mean(axis=0)) ** 2).mean(axis=1)
+    total = squares.sum()
+    without_one = total - squares * replicates / (replicates - 1)
+    variance = float(total / (replicates - 1) * samples)
+    if without_one.min() <= 1e-9 * total:
+        return variance, np.inf
+    return variance, float(np.sqrt((replicates - 1) * np.log(without_one).var()))
 
 
 def variance_ratio(films: np.ndarray, samples: float, baseline: np.ndarray, baseline_samples: float,
                    level: float = 0.001) -> tuple[float, float, float]:
-    """Variance per sample of replicates (R, n) over that of `baseline`, and the interval that holds the true ratio but for
-    a chance of `level`; NaN where either set has fewer than three replicates or no noise."""
-    variance, error = variance_per_sample(films, samples)
-    accepted, accepted_error = variance_per_sample(baseline, baseline_samples)
-    return ratio_interval((variance, error), (accepted, accepted_error), len(films) + len(baseline) - 2, level)
+    """Variance per sample of replicates (R, n) over that of `baseline` (R', n), and its interval; see `ratio_interval`."""
+    measured, accepted = variance_per_sample(films, samples), variance_per_sample(baseline, baseline_samples)
+    return ratio_interval(measured, accepted, len(films) + len(baseline) - 2, level)
 
 
 def ratio_interval(measured: tuple[float, float], accepted: tuple[float, float], degrees: int,
                    level: float = 0.001) -> tuple[float, float, float]:
-    """Ratio of two values, each given with the standard error of its logarithm, and its interval by Student's t."""
-    if not measured[0] > 0 or not accepted[0] > 0:
+    """Ratio of two values, each given with the standard error of its logarithm, and the interval that holds the true ratio
+    but for a chance of `level`, by Student's t with so many `degrees` of freedom. NaN unless both are positive."""
+    if not (measured[0] > 0 and accepted[0] > 0):
         return np.nan, np.nan, np.nan
     ratio = measured[0] / accepted[0]
-    spread = float(np.exp(-stdtrit(degrees, level / 2) * np.hypot(measured[1], accepted[1])))
-    return ratio, ratio / spread, ratio * spread
+    spread = np.exp(min(-stdtrit(degrees, level / 2) * np.hypot(measured[1], accepted[1]), 700))
+    return ratio, float(ratio / spread), float(ratio * spread)
 
 
-def slope(samples: np.ndarray, rmse: np.ndarray, level: float = 0.05) -> tuple[float, float, float]:
+def slope(samples: ArrayLike, rmse: ArrayLike, level: float = 0.05) -> tuple[float, float, float]:
     """d log(rmse) / d log(samples) by least squares, and its interval at 1 - `level`: -1/2 for plain Monte Carlo.
 
     Steps without error are left out. NaN for fewer than two steps; with two, only the interval is NaN.
     """
-    known = np.asarray(rmse) > 0
-    x, y = np.log(np.asarray(samples, float)[known]), np.log(np.asarray(rmse, float)[known])
-    x, y = x - x.mean() if x.size else x, y - y.mean() if y.size else y
-    if x.size < 2 or not x.any():
+    samples, rmse = np.asarray(samples, float), np.asarray(rmse, float)
+    x, y = np.log(samples[rmse > 0]), np.log(rmse[rmse > 0])
+    if len(x) < 2:
         return np.nan, np.nan, np.nan
+    x, y = x - x.mean(), y - y.mean()
     fitted = float(x @ y / (x @ x))
-    if x.size == 2:
+    if len(x) == 2:
         return fitted, np.nan, np.nan
-    residual = ((y - fitted * x) ** 2).sum() / (x.size - 2)
-    half = -stdtrit(x.size - 2, level / 2) * np.sqrt(residual / (x @ x))
+    error = np.sqrt(((y - fitted * x) ** 2).sum() / (len(x) - 2) / (x @ x))
+    half = float(-stdtrit(len(x) - 2, level / 2) * error)
     return fitted, fitted - half, fitted + half
 
 
-def seconds_to(error: float, seconds: np.ndarray, rmse: np.ndarray) -> float | None:
+def seconds_to(error: float, seconds: Sequence[float], rmse: Sequence[float]) -> float | None:
     """Seconds at which the error first falls to `error`, interpolated on log axes between steps given in order of samples.
 
-    None where no step measured is that good; the first step's seconds, an upper bound, where it already is.
+    None where no step measured is that good; the first step's seconds, an upper bound, where that one already is.
     """
-    if len(rmse) and rmse[0] <= error:
-        return float(seconds[0])
-    for (time, before), (later, after) in pairwise(zip(seconds, rmse, strict=True)):
+    steps = list(zip(seconds, rmse, strict=True))
+    if steps and steps[0][1] <= error:
+        return float(steps[0][0])
+    for (time, before), (later, after) in pairwise(steps):
         if before > error >= after:
-            return float(_log_interpolated(error, before, after, time, later))
+            share = np.log(before / error) / np.log(before / after) if after > 0 else 1.0
+            return float(time * (later / time) ** share)
     return None
-
-
-def _log_interpolated(error: float, before: float, after: float, time: float, later: float) -> float:
-    if after == 0:
-        return later
-    share = np.log(before / error) / np.log(before / after)
-    return time * (later / time) ** share
