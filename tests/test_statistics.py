@@ -84,9 +84,11 @@ def test_all_films_alike_are_no_repeat():
 
 
 def test_films_alike_by_chance_are_no_repeat():
-    """Counts of hits, 5 points with 0.3 expected each: of 16 films several are equal by chance in every trial."""
-    counts = np.random.default_rng(5).poisson(0.3, (50, 16, 5)).astype(float)
-    assert all(len(np.unique(films, axis=0)) < 16 for films in counts)
+    """Counts of hits, from rare to many, at 5 points and at 192: of 16 films several are equal by chance in many trials."""
+    rng = np.random.default_rng(5)
+    counts = [rng.poisson(expected, (16, size)).astype(float)
+              for size in (5, 192) for expected in (0.003, 0.03, 0.3, 3) for _ in range(50)]
+    assert sum(1 < len(np.unique(films, axis=0)) < 16 for films in counts) > 200
     assert not any(statistics.repeats(films) for films in counts)
 
 

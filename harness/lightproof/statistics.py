@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from scipy.special import pdtrc, stdtrit
 
 TILES = 64
-CHANCE = 1e-4  # below which equal films are no coincidence
+CHANCE = 1e-6  # below which equal films are no coincidence
 
 
 def simultaneous_quantile(level: float, intervals: int, replicates: int) -> float:
@@ -55,8 +55,9 @@ def repeats(films: np.ndarray) -> bool:
 
     Noise with few values, such as counts of hits at a few points, makes films equal by chance: two of them with the
     product over elements, taken as independent, of how often distinct films agree there. The number of chance repeats
-    is nearly Poisson.
+    is nearly Poisson. Black films say nothing: no sample has reached the light.
     """
+    films = films[films.any(axis=1)]
     distinct = np.unique(films, axis=0)
     if len(distinct) in (1, len(films)):
         return False
