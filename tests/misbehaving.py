@@ -111,6 +111,11 @@ def _speaks_nonsense(method: Misbehaving, film: np.ndarray) -> np.ndarray:
     return film
 
 
+def _is_slow(method: Misbehaving, film: np.ndarray) -> np.ndarray:
+    time.sleep(0.02)
+    return film
+
+
 def _child(method: Misbehaving, film: np.ndarray) -> np.ndarray:
     child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(3600)"], start_new_session=True)
     Path(os.environ["MISBEHAVING_FLAG"]).write_text(str(child.pid))
@@ -144,6 +149,7 @@ FAULTS = {
     "segfaults": _segfaults,
     "crashes-once": _crashes_once,
     "hangs": _hangs,
+    "slow": _is_slow,
     "ignores-sigterm": _hangs,
     "floods": _floods,
     "closes-pipe": _closes_pipe,

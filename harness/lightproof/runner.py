@@ -45,6 +45,11 @@ class Cell:
     decision: Decision = Decision(False)
 
     @property
+    def name(self) -> str:
+        """Scene and method."""
+        return f"{self.scene.name} {self.entry.name}"
+
+    @property
     def results(self) -> list[Result]:
         """All results, step by step."""
         return [result for step in self.steps.values() for result in step]

@@ -1,0 +1,207 @@
+"""The ladder, the budget and the order of steps, with a pool whose costs are known: no clock, no process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import pytest
+from test_store import RUN, SCENES, trial
+
+from lightproof import store, suite
+from lightproof.renderers.registry import Entry
+from lightproof.runner import Cell, Decision, Progress, Runner
+from lightproof.trial import Result, Status, Trial
+
+SCENE = suite.default().scene("point-light")
+REPLICATES = 4
+UNDECIDED = Decision(False)
+
+
+@dataclass
+class FakePool:
+    """Renders in no time and charges `cost` (method -> seconds per sample); `setup` [s] with every preparation."""
+
+    cost: dict[str, float]
+    deterministic: bool = False
+    setup: float = 0.0
+    status: Callable[[Trial], Status] = lambda trial: Status.OK
+    asked: list[Trial] = field(default_factory=list)
+    timeouts: list[float] = field(default_factory=list)
+
+    def render(self, entry, scene, trial, film, timeout) -> Result:
+        self.asked.append(trial)
+        self.timeouts.append(timeout)
+        seconds = {"setup": self.setup, "render": self.cost[entry.name] * trial.samples}
+        return Result(trial, self.status(trial), samples=trial.samples, seconds=seconds, deterministic=self.deterministic)
+
+
+def climb(tmp_path, pool: FakePool, decide: Callable[[Sequence[Result]], Decision], budget: float = 1e9, cell_budget: float = 1e9,
+          told: list[Progress] | None = None, record: store.Store | None = None) -> list[Cell]:
+    """The cells after a run of every method of the pool on one scene."""
+    cells = [Cell(SCENE, Entry(name, "x:X", worker=name), cell_budget, REPLICATES) for name in pool.cost]
+    record = record or store.create(tmp_path, RUN, SCENES)
+    return Runner(cells, budget, record, pool, decide, ([] if told is None else told).append).run()
+
+
+def decided_at(samples: int, needed: int | None = None) -> Callable[[Sequence[Result]], Decision]:
+    """A verdict that stands from a step of `samples` on."""
+    return lambda results: Decision(max(result.trial.samples for result in results) >= samples, needed)
+
+
+def steps(pool: FakePool) -> list[int]:
+    """Samples per element of each film asked for."""
+    return [trial.samples for trial in pool.asked]
+
+
+def test_the_ladder(tmp_path):
+    """A verdict decided at 1,024 samples: steps of 64, 256 and 1,024 with fresh replicates, the run's seed in each trial."""
+    pool = FakePool({"a": 1e-6})
+    climb(tmp_path, pool, decided_at(1024))
+    assert steps(pool) == [64] * 4 + [256] * 4 + [1024] * 4
+    assert [trial.replicate for trial in pool.asked] == [0, 1, 2, 3] * 3
+    assert {trial.run_seed for trial in pool.asked} == {RUN.seed}
+    assert len({trial.seed for trial in pool.asked}) == 12
+
+
+def test_a_decided_verdict_gets_three_steps_for_its_slope(tmp_path):
+    """A verdict that stands at once: two more steps, so that error against time is a line."""
+    pool = FakePool({"a": 1e-6})
+    climb(tmp_path, pool, decided_at(64))
+    assert steps(pool) == [64] * 4 + [256] * 4 + [1024] * 4
+
+
+def test_the_deterministic_render_one_film_a_step(tmp_path):
+    """A deterministic method decided at 4,096 samples: four films."""
+    pool = FakePool({"a": 1e-6}, deterministic=True)
+    climb(tmp_path, pool, decided_at(4096))
+    assert steps(pool) == [64, 256, 1024, 4096]
+
+
+@pytest.mark.parametrize("status", [Status.ERROR, Status.UNSUPPORTED])
+def test_a_trial_that_fails_ends_its_cell_alone(tmp_path, status):
+    """The second film of a method fails: that method stops, the other climbs on, everything is recorded."""
+    pool = FakePool({"a": 1e-6, "b": 1e-6}, status=lambda trial: status if (trial.method, trial.replicate) == ("a", 1) else Status.OK)
+    cells = climb(tmp_path, pool, decided_at(1024))
+    assert [len(cell.results) for cell in cells] == [2, 12]
+    assert len(store.open(tmp_path / RUN.id).results()) == 14
+
+
+def test_the_cheapest_undecided_step_comes_first(tmp_path):
+    """a costs 10 times as much as b: after the first step of both, b climbs until its next step is dearer than a's."""
+    pool = FakePool({"a": 1e-5, "b": 1e-6})
+    climb(tmp_path, pool, decided_at(4096))
+    order = [(trial.method, trial.samples) for trial in pool.asked if trial.replicate == 0]
+    assert order == [("a", 64), ("b", 64), ("b", 256), ("b", 1024), ("a", 256), ("b", 4096), ("a", 1024), ("a", 4096)]
+
+
+def test_verdicts_come_before_slopes(tmp_path):
+    """a is decided at once, b at 4,096 samples and costs more: b first."""
+    pool = FakePool({"a": 1e-6, "b": 1e-3})
+    climb(tmp_path, pool, lambda results: Decision(results[0].trial.method == "a" or results[-1].trial.samples == 4096))
+    order = [(trial.method, trial.samples) for trial in pool.asked if trial.replicate == 0]
+    assert order == [("a", 64), ("b", 64), ("b", 256), ("b", 1024), ("b", 4096), ("a", 256), ("a", 1024)]
+
+
+def test_the_budget_of_the_run(tmp_path):
+    """Steps cost 1, 4 and 16 s; of 10 s there is none left for the third."""
+    pool = FakePool({"a": 1 / 256})
+    cells = climb(tmp_path, pool, lambda results: UNDECIDED, budget=10)
+    assert max(steps(pool)) == 256
+    assert cells[0].seconds == pytest.approx(5)
+
+
+def test_the_budget_of_a_cell(tmp_path):
+    """Steps of a cost 1, 4 and 16 s: of 10 s there is none left for the third; b, a thousand times cheaper, gets far."""
+    pool = FakePool({"a": 1 / 256, "b": 1 / 256_000})
+    a, b = climb(tmp_path, pool, lambda results: UNDECIDED, cell_budget=10)
+    assert (a.height, b.height) == (2, 7)
+    assert a.seconds <= 10 and b.seconds <= 10
+
+
+def test_preparing_counts_once_a_step(tmp_path):
+    """2 s of set-up and four films of 1 s: a step costs 6 s, and of 20 s two steps are all that fits."""
+    pool = FakePool({"a": 1 / 64}, setup=2)
+    (cell,) = climb(tmp_path, pool, lambda results: UNDECIDED, cell_budget=30)
+    assert (cell.height, cell.seconds) == (2, 6 + 18)
+
+
+def test_a_first_step_that_is_too_dear_is_not_finished(tmp_path):
+    """Films of 64 s with 150 s to spend: two are rendered (one alone may have compiled), then the cell stops."""
+    pool = FakePool({"a": 1.0})
+    (cell,) = climb(tmp_path, pool, lambda results: UNDECIDED, cell_budget=150)
+    assert (len(cell.results), cell.height) == (2, 0)
+
+
+def test_a_hopeless_verdict_gets_three_steps(tmp_path):
+    """A verdict that needs a million samples, of which the cell's budget holds 16,384: three steps for the slope, no more."""
+    pool = FakePool({"a": 1e-5})
+    climb(tmp_path, pool, lambda results: Decision(False, 1_000_000), cell_budget=1.0)
+    assert max(steps(pool)) == 1024
+
+
+def test_a_verdict_within_reach_is_climbed_to(tmp_path):
+    """A verdict that needs 20,000 samples and is decided at the next step, 65,536."""
+    pool = FakePool({"a": 1e-6})
+    climb(tmp_path, pool, decided_at(65_536, needed=20_000), cell_budget=1.0)
+    assert max(steps(pool)) == 65_536
+
+
+def test_the_ladder_ends(tmp_path):
+    """A method that costs nothing and is never decided: the last step stays within 32 bits."""
+    pool = FakePool({"a": 0.0}, deterministic=True)
+    climb(tmp_path, pool, lambda results: UNDECIDED)
+    assert max(steps(pool)) == 2**30
+
+
+def test_time_outs_follow_what_was_measured(tmp_path):
+    """Films that took 5 s: the next step's, four times as long, may take ten times 20 s before they count as hanging."""
+    pool = FakePool({"a": 5 / 64})
+    climb(tmp_path, pool, decided_at(256), cell_budget=100)
+    assert pool.timeouts[0] == 100
+    assert pool.timeouts[4] == 200
+
+
+def test_a_resumed_run_carries_on(tmp_path):
+    """Interrupted after any number of trials and resumed: the same trials in all, none twice."""
+    whole = FakePool({"a": 1e-5, "b": 1e-6})
+    climb(tmp_path / "whole", whole, decided_at(1024))
+    for stop in (0, 1, 5, 13, 23):
+        first, rest = FakePool(whole.cost, status=stop_after(stop)), FakePool(whole.cost)
+        record = store.create(tmp_path / str(stop), RUN, SCENES)
+        with pytest.raises(KeyboardInterrupt):
+            climb(tmp_path, first, decided_at(1024), record=record)
+        climb(tmp_path, rest, decided_at(1024), record=record)
+        assert len(rest.asked) == len(whole.asked) - stop
+        assert sorted(map(str, first.asked[:-1] + rest.asked)) == sorted(map(str, whole.asked))
+
+
+def stop_after(trials: int) -> Callable[[Trial], Status]:
+    """A status that interrupts the run once so many trials have succeeded."""
+    left = iter([Status.OK] * trials)
+
+    def status(trial: Trial) -> Status:
+        for ok in left:
+            return ok
+        raise KeyboardInterrupt
+
+    return status
+
+
+def test_a_resumed_run_counts_what_was_spent(tmp_path):
+    """4 s of a budget of 10 s are recorded: the next step, of 16 s, is not begun."""
+    record = store.create(tmp_path, RUN, SCENES)
+    for replicate in range(REPLICATES):
+        record.append(Result(trial(64, replicate, "a"), Status.OK, seconds={"render": 1.0}))
+    pool = FakePool({"a": 1 / 64})
+    climb(tmp_path, pool, lambda results: UNDECIDED, budget=10, record=record)
+    assert pool.asked == []
+
+
+def test_progress_is_told(tmp_path):
+    """Two methods of three steps: told before each step, and at the end with both finished."""
+    told: list[Progress] = []
+    climb(tmp_path, FakePool({"a": 1e-6, "b": 1e-6}), decided_at(1024), budget=7, told=told)
+    assert [progress.cell is None for progress in told] == [False] * 6 + [True]
+    assert (told[0].finished, told[-1].finished, told[-1].cells, told[-1].budget) == (0, 2, 2, 7)
+    assert [progress.seconds for progress in told] == sorted(progress.seconds for progress in told)
