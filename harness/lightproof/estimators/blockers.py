@@ -1,0 +1,115 @@
+"""What stands between: which surfaces can cast a shadow on a film at all, and the test that they do."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba.extending import overload
+
+from lightproof import geometry
+from lightproof.estimators import elements
+from lightproof.estimators.compiled import fast
+from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, placed, support
+from lightproof.estimators.vectors import dot, like, sub
+from lightproof.scene import AreaLight, PlaneFilm, PointsFilm, Scene, Surface
+
+CONTACT = 1e-12  # of a distance: what lies no farther in front of a plane than this coincides with it
+
+
+def between(scene: Scene, film: PlaneFilm | PointsFilm, own: str, light: tuple | None) -> list[Flat | Sphere]:
+    """What can cast a shadow of one piece `light` (None: of a point or a beam) of the light or surface `own`: every other
+    surface and light but those that lie behind the film's plane or behind the light's."""
+    solid = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, AreaLight | Surface) and item.id != own]
+    pieces = [piece for item in solid for piece in parts(item.shape) if not encloses(item)]
+    planes = [plane for plane in (elements.flat(film), light_plane(light)) if plane is not None]
+    return [piece for piece in pieces if all(reaches(piece, *plane) for plane in planes)]
+
+
+def light_plane(light: tuple | None) -> tuple[np.ndarray, np.ndarray] | None:
+    """A point and the normal of a flat light's plane."""
+    return None if light is None or isinstance(light, Sphere) else (np.array(light.center), np.array(light.normal))
+
+
+def reaches(piece: Flat | Sphere, point: np.ndarray, normal: np.ndarray) -> bool:
+    """Whether any of the piece lies in front of a plane."""
+    level = float(point @ normal)
+    return support(piece, normal) - level > CONTACT * (abs(level) + np.abs(piece.center).max())
+
+
+def encloses(item: AreaLight | Surface) -> bool:
+    """Whether this is a sphere seen from inside; it stands around film and lights, and between none."""
+    return isinstance(item.shape, geometry.Sphere) and getattr(item, "side", "outside") == "inside"
+
+
+def visible(blockers, x, d):
+    """Whether none of a tuple of blockers cuts the segment from x to x + d; with no blockers no code at all."""
+
+
+@overload(visible)
+def _visible(blockers, x, d):
+    if len(blockers) == 0:
+        return lambda blockers, x, d: True
+    return lambda blockers, x, d: (not hidden(blockers[0], x, d)) & visible(blockers[1:], x, d)
+
+
+def hidden(blocker, x, d):
+    """Whether a blocker cuts the segment from x to x + d."""
+
+
+@overload(hidden)
+def _hidden(blocker, x, d):
+    if blocker.instance_class is Sphere:
+        return _behind_sphere
+    return {Parallelogram: _behind_parallelogram, Triangle: _behind_triangle, Disk: _behind_disk}[blocker.instance_class]
+
+
+@fast
+def crossing(blocker, x, d):
+    """Where the segment's line meets the blocker's plane, without a division: whether within the segment, and parameters
+    s, t of the point, both times `scale` >= 0."""
+    o = sub(x, blocker.center)
+    above, slope = dot(o, blocker.normal), dot(d, blocker.normal)
+    s = dot(o, blocker.dual_u) * slope - above * dot(d, blocker.dual_u)
+    t = dot(o, blocker.dual_v) * slope - above * dot(d, blocker.dual_v)
+    return above * (above + slope) < like(slope, 0), s, t, slope
+
+
+def _behind_parallelogram(blocker, x, d):
+    within, s, t, scale = crossing(blocker, x, d)
+    half = like(scale, 0.5) * abs(scale)
+    return within & (abs(s) <= half) & (abs(t) <= half)
+
+
+def _behind_triangle(blocker, x, d):
+    within, s, t, scale = crossing(blocker, x, d)
+    sign = math.copysign(like(scale, 1), scale)
+    zero = like(scale, 0)
+    return within & (s * sign >= zero) & (t * sign >= zero) & ((s + t) * sign <= abs(scale))
+
+
+def _behind_disk(blocker, x, d):
+    within, s, t, scale = crossing(blocker, x, d)
+    return within & (s * s + t * t <= scale * scale)
+
+
+def _behind_sphere(blocker, x, d):
+    """The segment's point nearest to the centre lies inside; the ends lie outside."""
+    o = sub(blocker.center, x)
+    b, d2 = dot(o, d), dot(d, d)
+    miss = dot(o, o) * d2 - b * b
+    return (b > like(b, 0)) & (b < d2) & (miss < blocker.radius * blocker.radius * d2)
+
+
+def all_placed(blockers, origin, frame, model):
+    """A tuple of blockers as seen from `origin` along the axes of `frame`."""
+
+
+@overload(all_placed)
+def _all_placed(blockers, origin, frame, model):
+    if len(blockers) == 0:
+        return lambda blockers, origin, frame, model: ()
+    return lambda blockers, origin, frame, model: (
+        placed(blockers[0], origin, frame, model),
+        *all_placed(blockers[1:], origin, frame, model),
+    )

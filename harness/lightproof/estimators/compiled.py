@@ -1,0 +1,65 @@
+"""Numba, set up once for every kernel here: flags, and a cache that notices an edit in any file of this folder.
+
+Numba's own cache looks at the file of the kernel alone, so that an edit in a helper would leave a stale answer. Here the
+cache folder is named by a hash of all sources and of the versions that compile them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import llvmlite
+import numba
+from numba import njit
+
+SOURCES = Path(__file__).parent
+STRICT = {"contract", "nnan", "nsz"}  # leaves the order of operations alone: cancellations stay under control
+
+strict = njit(fastmath=STRICT, error_model="numpy")
+fast = njit(fastmath=True, error_model="numpy")
+
+
+def digest(folder: Path) -> str:
+    """SHA-256 of every Python source in `folder` (names and bytes) and of the versions that compile them."""
+    state = hashlib.sha256(repr((sys.version, numba.__version__, llvmlite.__version__)).encode())
+    for path in sorted(folder.glob("*.py")):
+        source = path.read_bytes()
+        state.update(f"{path.name}:{len(source)}:".encode() + source)
+    return state.hexdigest()
+
+
+def cache_folder() -> Path | None:
+    """Where compiled kernels are kept, $XDG_CACHE_HOME (or ~/.cache)/lightproof/kernels-<digest>; None if it cannot be written."""
+    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    folder = base / "lightproof" / f"kernels-{digest(SOURCES)[:16]}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return None
+    return folder
+
+
+CACHE = cache_folder()
+
+
+def kernel(fastmath: bool | set[str]) -> Callable[[Callable], Callable]:
+    """Decorator for a function that threads call: compiled, cached, without the interpreter's lock."""
+
+    def compile_lazily(function: Callable) -> Callable:
+        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(CACHE or "")
+        try:
+            return njit(cache=CACHE is not None, nogil=True, fastmath=fastmath, error_model="numpy")(function)
+        finally:
+            numba.config.CACHE_DIR = before
+
+    return compile_lazily
+
+
+fast_kernel = kernel(fastmath=True)
+strict_kernel = kernel(fastmath=STRICT)

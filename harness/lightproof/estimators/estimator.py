@@ -1,0 +1,90 @@
+"""What the in-house estimators share: phases timed, elements spread over threads, sums turned into film and variance."""
+
+from __future__ import annotations
+
+import time
+from abc import abstractmethod
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from importlib.metadata import version
+from typing import ClassVar
+
+import numpy as np
+
+from lightproof.method import Method, Rendering
+from lightproof.scene import Scene
+
+TASKS = 64  # pieces of work for one film: fixed, so that the number of threads changes nothing
+
+
+class Estimator(Method):
+    """A method of ours: `limits` say what it cannot do, `build` takes a scene, `warm_up` runs every kernel once."""
+
+    precision: ClassVar[str] = "float64"
+    limits: ClassVar[tuple[Callable[[Scene], str | None], ...]] = ()
+
+    def version(self) -> str:
+        return version("lightproof")
+
+    def unsupported(self, scene: Scene) -> str | None:
+        return next((reason for limit in self.limits if (reason := limit(scene))), None)
+
+    def prepare(self, scene: Scene) -> Mapping[str, float]:
+        start = time.perf_counter()
+        self.size = scene.size
+        self.build(scene)
+        built = time.perf_counter()
+        self.warm_up()
+        return {"setup": built - start, "compile": time.perf_counter() - built}
+
+    @abstractmethod
+    def build(self, scene: Scene) -> None:
+        """Turn the scene into what the kernels take."""
+
+    @abstractmethod
+    def warm_up(self) -> None:
+        """Run every kernel that this scene needs once, as little as it can do."""
+
+
+class Sampler(Estimator):
+    """A Monte Carlo method whose kernel adds up values and their squares, sample by sample."""
+
+    def warm_up(self) -> None:
+        self.add(0, 1, (0, 1), 0, np.zeros((1, 2)))
+
+    @abstractmethod
+    def add(self, first: int, last: int, samples: tuple[int, int], seed: int, out: np.ndarray) -> None:
+        """Sums over samples `samples[0]` to `samples[1]` of elements `first` to `last`, into `out` (last - first, 2)."""
+
+    def render(self, samples: int, seed: int) -> Rendering:
+        return Rendering(*sampled(self.add, self.size, samples, seed, self.threads))
+
+
+def sampled(add: Callable, size: int, samples: int, seed: int, threads: int) -> tuple[np.ndarray, int, np.ndarray | None]:
+    """Film, samples and variance of a kernel that adds up values and their squares."""
+    sums = spread(lambda first, last, span, out: add(first, last, span, seed, out), size, samples, 2, threads)
+    return sums[:, 0] / samples, samples, variance_of_mean(sums[:, 0], sums[:, 1], samples)
+
+
+def spread(add: Callable, size: int, steps: int, columns: int, threads: int) -> np.ndarray:
+    """Runs `add(first, last, (begin, end), out)` over all elements and steps, cut into TASKS pieces or so; the sums (size,
+    columns) do not depend on `threads`."""
+    tiles = np.array_split(np.arange(size), min(size, TASKS))
+    edges = np.linspace(0, steps, min(steps, max(1, TASKS // size)) + 1).astype(int).tolist()
+    sums = np.zeros((len(edges) - 1, size, columns))
+
+    def work(task: tuple[int, np.ndarray]) -> None:
+        part, tile = task
+        first, last = int(tile[0]), int(tile[-1]) + 1
+        add(first, last, (edges[part], edges[part + 1]), sums[part, first:last])
+
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, [(part, tile) for part in range(len(sums)) for tile in tiles]))
+    return sums.sum(axis=0)
+
+
+def variance_of_mean(total: np.ndarray, square: np.ndarray, samples: int) -> np.ndarray | None:
+    """Variance of the mean of `samples` values from the sums of them and of their squares; one sample has none."""
+    if samples < 2:
+        return None
+    return np.maximum(square - total**2 / samples, 0) / (samples - 1) / samples

@@ -1,0 +1,200 @@
+"""Lights as the fast kernel samples them: one point of the light per draw, with density per area.
+
+`arriving(lamp, x, s, t)` gives the estimate of irradiance [W/m2] at `x`, whose normal is the third axis, from two draws
+s, t (in units of TICK), and the vector from `x` to the light's point:
+L cos(theta_x) cos(theta_y) / (r^2 p), with cosines written as dot products with the unnormalised d = y - x.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import overload
+
+from lightproof import geometry
+from lightproof import scene as scenes
+from lightproof.estimators import shapes
+from lightproof.estimators.compiled import fast
+from lightproof.estimators.rng import TICK
+from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, placed
+from lightproof.estimators.vectors import along, dot, like, scaled, sub, tangents, turned
+from lightproof.geometry import Vec3
+
+TURN_TERMS = {4: 6, 8: 12}  # bytes of a float -> terms of the Taylor series that reach its last digit up to pi/2
+
+
+class Lamp(NamedTuple):
+    """A shape that emits from its front. `strength`: radiance over density per area [W/sr]; of a sphere, the radiance."""
+
+    shape: Flat | Sphere
+    strength: float
+
+
+class Point(NamedTuple):
+    """A point of `strength` [W/sr], the same in every direction."""
+
+    position: Vec3
+    strength: float
+
+
+class Beam(NamedTuple):
+    """A collimated beam; `back` runs against it, beyond everything in the scene; `strength` is its irradiance [W/m2]."""
+
+    back: Vec3
+    strength: float
+
+
+def lamps(scene: scenes.Scene, reach: float) -> list[tuple[str, Lamp | Point | Beam]]:
+    """Every light of a scene (surfaces that emit are lights) in pieces, each with the light's id; `reach` [m] leads out of
+    the scene."""
+    pieces = []
+    for light in (*scene.lights, *(surface for surface in scene.surfaces if surface.radiance)):
+        match light:
+            case scenes.PointLight():
+                pieces.append((light.id, Point(light.position, light.intensity)))
+            case scenes.DirectionalLight():
+                back = -reach * geometry.unit(light.direction)
+                pieces.append((light.id, Beam(tuple(back.tolist()), light.irradiance)))
+            case scenes.AreaLight() | scenes.Surface():
+                pieces += [(light.id, lamp(shape, light.radiance)) for shape in shapes.parts(light.shape)]
+    return pieces
+
+
+def lamp(shape: Flat | Sphere, radiance: float) -> Lamp:
+    """A shape that emits `radiance` [W/(m2 sr)]."""
+    return Lamp(shape, radiance if isinstance(shape, Sphere) else radiance * shapes.area(shape))
+
+
+def faced(lamp, origin, frame, model):
+    """The lamp as seen from `origin` along the axes of `frame`, in the precision of `model`."""
+
+
+@overload(faced)
+def _faced(lamp, origin, frame, model):
+    return FACED[lamp.instance_class]
+
+
+def _faced_lamp(lamp, origin, frame, model):
+    return Lamp(placed(lamp.shape, origin, frame, model), like(model, lamp.strength))
+
+
+def _faced_point(lamp, origin, frame, model):
+    return Point(turned(sub(lamp.position, origin), frame, model), like(model, lamp.strength))
+
+
+def _faced_beam(lamp, origin, frame, model):
+    return Beam(turned(lamp.back, frame, model), like(model, lamp.strength))
+
+
+FACED = {Lamp: _faced_lamp, Point: _faced_point, Beam: _faced_beam}
+
+
+def arriving(lamp, x, s, t):
+    """Estimate of irradiance [W/m2] at `x` without blockers, and the vector to the light's point; see the module."""
+
+
+@overload(arriving)
+def _arriving(lamp, x, s, t):
+    if lamp.instance_class is Lamp:
+        return _arriving_sphere if lamp.types[0].instance_class is Sphere else _arriving_flat
+    return {Point: _arriving_point, Beam: _arriving_beam}[lamp.instance_class]
+
+
+def _arriving_flat(lamp, x, s, t):
+    a, b = parameters(lamp.shape, s, t)
+    d = sub(along(along(lamp.shape.center, a, lamp.shape.u), b, lamp.shape.v), x)
+    r2 = dot(d, d)
+    zero = like(r2, 0)
+    return lamp.strength * max(d[2], zero) * max(-dot(d, lamp.shape.normal), zero) / (r2 * r2), d
+
+
+def _arriving_sphere(lamp, x, s, t):
+    """A point uniform on the cap of the sphere that faces x, of area 2 pi R^2 (1 - R/r); black from inside."""
+    w = sub(x, lamp.shape.center)
+    r = math.sqrt(dot(w, w))
+    zero, one = like(r, 0), like(r, 1)
+    height = max((r - lamp.shape.radius) / r, zero)
+    down = (s * like(s, TICK) + like(s, 0.5)) * height
+    side = math.sqrt(max(down * (like(s, 2) - down), zero))
+    axis = scaled(one / r, w)
+    e1, e2 = tangents(axis)
+    sine, cosine = turn(t)
+    n = along(along(scaled(one - down, axis), side * cosine, e1), side * sine, e2)
+    d = sub(along(lamp.shape.center, lamp.shape.radius, n), x)
+    r2 = dot(d, d)
+    cap = like(s, 2 * np.pi) * lamp.shape.radius * lamp.shape.radius * height
+    return lamp.strength * cap * max(d[2], zero) * max(-dot(d, n), zero) / (r2 * r2), d
+
+
+def _arriving_point(lamp, x, s, t):
+    d = sub(lamp.position, x)
+    r2 = dot(d, d)
+    return lamp.strength * max(d[2], like(r2, 0)) / (r2 * math.sqrt(r2)), d
+
+
+def _arriving_beam(lamp, x, s, t):
+    return lamp.strength * max(lamp.back[2], like(s, 0)) / math.sqrt(dot(lamp.back, lamp.back)), lamp.back
+
+
+def parameters(shape, s, t):
+    """A point uniform over the parameters of a flat shape, from two draws in units of TICK."""
+
+
+@overload(parameters)
+def _parameters(shape, s, t):
+    return {Parallelogram: _in_square, Triangle: _in_triangle, Disk: _in_circle}[shape.instance_class]
+
+
+def _in_square(shape, s, t):
+    return s * like(s, TICK), t * like(s, TICK)
+
+
+def _in_triangle(shape, s, t):
+    """Uniform in the unit square, the upper half folded onto the lower."""
+    a, b = s * like(s, TICK), t * like(s, TICK)
+    fold = like(s, 1) if a + b <= like(s, 0) else like(s, -1)
+    return like(s, 0.5) + fold * a, like(s, 0.5) + fold * b
+
+
+def _in_circle(shape, s, t):
+    radius = math.sqrt(max(s * like(s, TICK) + like(s, 0.5), like(s, 0)))
+    sine, cosine = turn(t)
+    return radius * cosine, radius * sine
+
+
+@fast
+def turn(t):
+    """sin and cos of 2 pi TICK t, by Taylor series of the half angle: unlike math.sin these run in vector registers."""
+    half = t * like(t, np.pi * TICK)
+    sine, cosine = series(half)
+    return like(t, 2) * sine * cosine, like(t, 1) - like(t, 2) * sine * sine
+
+
+def series(angle):
+    """sin and cos of an angle within a quarter turn, to the last digit of its type."""
+
+
+@overload(series)
+def _series(angle):
+    terms = TURN_TERMS[angle.bitwidth // 8]
+    sine = tuple((-1) ** k / math.factorial(2 * k + 1) for k in reversed(range(terms)))
+    cosine = tuple((-1) ** k / math.factorial(2 * k) for k in reversed(range(terms + 1)))
+
+    def evaluate(angle):
+        square = angle * angle
+        return angle * horner(sine, square), horner(cosine, square)
+
+    return evaluate
+
+
+def horner(coefficients, x):
+    """The polynomial with `coefficients`, highest first, at x."""
+
+
+@overload(horner)
+def _horner(coefficients, x):
+    if len(coefficients) == 1:
+        return lambda coefficients, x: like(x, coefficients[0])
+    return lambda coefficients, x: like(x, coefficients[-1]) + x * horner(coefficients[:-1], x)

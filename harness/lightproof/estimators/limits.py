@@ -1,0 +1,39 @@
+"""What a method cannot do: one question a function, asked of a scene; the answer is the reason, or None."""
+
+from __future__ import annotations
+
+from lightproof import geometry
+from lightproof import scene as scenes
+from lightproof.scene import CameraFilm, Scene
+
+
+def no_cylinders(scene: Scene) -> str | None:
+    things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(getattr(item, "shape", None), geometry.Cylinder)]
+    return f"our estimators have no cylinders ('{things[0].id}' is one)" if things else None
+
+
+def no_solid_angle(scene: Scene) -> str | None:
+    return "it estimates irradiance and radiance, not solid angles" if scene.film.quantity == "solid_angle" else None
+
+
+def no_reflections(scene: Scene) -> str | None:
+    """Light may be reflected once, by what a camera sees."""
+    most = 1 if isinstance(scene.film, CameraFilm) else 0
+    if not scene.reflects or (scene.max_bounces != "all" and scene.max_bounces <= most):
+        return None
+    return "it computes direct light only, and light reaches this film after reflections; path can"
+
+
+def no_skies(scene: Scene) -> str | None:
+    skies = [light for light in scene.lights if isinstance(light, scenes.Environment | scenes.SunDisc | scenes.OvercastSky)]
+    return f"it draws points on a light's area, and the environment '{skies[0].id}' has none; mc-cosine can" if skies else None
+
+
+def no_bulbs(scene: Scene) -> str | None:
+    bulbs = [light for light in scene.lights if isinstance(light, scenes.PointLight | scenes.DirectionalLight)]
+    return f"'{bulbs[0].id}' fills no solid angle, so that no direction meets it; mc-area can" if bulbs else None
+
+
+def no_glowing_inside(scene: Scene) -> str | None:
+    inner = [surface for surface in scene.surfaces if surface.side == "inside"]
+    return f"it has no surfaces seen from inside ('{inner[0].id}' is one); path can" if inner else None

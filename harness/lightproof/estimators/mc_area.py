@@ -1,0 +1,142 @@
+"""Monte Carlo over the lights' area: E ~ (1/N) sum L V cos(theta_x) cos(theta_y) / (r^2 p), y uniform over the light.
+
+The kernel is one function, compiled for what the scene has: its kind of light, its blockers (none: no visibility test),
+its precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lightproof.estimators import elements, path, world
+from lightproof.estimators.blockers import all_placed, between, visible
+from lightproof.estimators.compiled import fast, fast_kernel
+from lightproof.estimators.estimator import Estimator, sampled, spread, variance_of_mean
+from lightproof.estimators.lamps import Beam, Lamp, Point, arriving, faced, lamps
+from lightproof.estimators.limits import no_cylinders, no_glowing_inside, no_reflections, no_skies, no_solid_angle
+from lightproof.estimators.rng import A1, A2, A3, TICK, halves, hash32, mix64, stream, ticks
+from lightproof.estimators.shapes import Flat, Sphere
+from lightproof.estimators.vectors import like
+from lightproof.method import Rendering
+from lightproof.scene import CameraFilm, Scene
+
+BLOCK = 2048  # samples between two draws of the lattice's shift, summed in the kernel's precision; blocks add in float64
+ONE = np.uint32(1)
+REACH = 100.0  # sizes of the scene: the length of a shadow ray along a beam
+
+
+@fast
+def sum_block(lamp, blockers, cell, key, count, pivot):
+    """Sum of (f - pivot) and of its square over `count` samples."""
+    start, shift_t = halves(key)
+    shift_p, shift_q = halves(mix64(key))
+    zero = like(pivot, 0)
+    total, square = zero, zero
+    for i in range(count):
+        h = hash32(i, start)
+        s, t = like(pivot, ticks(h, ONE, np.uint32(0))), like(pivot, ticks(h, A1, shift_t))
+        p, q = like(pivot, ticks(h, A2, shift_p)), like(pivot, ticks(h, A3, shift_q))
+        f = sample(lamp, blockers, cell, s, t, p, q) - pivot
+        total += f
+        square += f * f
+    return total, square
+
+
+@fast
+def sample(lamp, blockers, cell, s, t, p, q):
+    """One estimate of the element's irradiance from four draws: s, t on the light, p, q on the element."""
+    x = p * cell[0] + q * cell[1], q * cell[2], like(p, 0)
+    f, d = arriving(lamp, x, s, t)
+    return f if visible(blockers, x, d) else like(p, 0)
+
+
+@fast_kernel
+def estimate(lamp, blockers, elements, first, seed, blocks, samples, model, out):
+    """Adds up blocks `blocks[0]` to `blocks[1]` of `samples` for each of `elements` (n, 15), the first of which is the film's
+    element `first`. `out` (n, 3): sums over the samples of the pivot, of f - pivot and of its square."""
+    for e in range(len(elements)):
+        row = elements[e]
+        origin = row[0], row[1], row[2]
+        frame = (row[3], row[4], row[5]), (row[6], row[7], row[8]), (row[9], row[10], row[11])
+        cell = like(model, row[12] * TICK), like(model, row[13] * TICK), like(model, row[14] * TICK)
+        seen, between = faced(lamp, origin, frame, model), all_placed(blockers, origin, frame, model)
+        zero = like(model, 0)
+        pivot = sample(seen, between, cell, zero, zero, zero, zero)
+        total, square = 0.0, 0.0
+        for block in range(blocks[0], blocks[1]):
+            key = stream(seed, first + e, block)
+            sums = sum_block(seen, between, cell, key, min(BLOCK, samples - block * BLOCK), pivot)
+            total += sums[0]
+            square += sums[1]
+        drawn = min(blocks[1] * BLOCK, samples) - blocks[0] * BLOCK
+        out[e, 0], out[e, 1], out[e, 2] = drawn * np.float64(pivot), total, square
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One piece of a light with what can shadow it, and its `share` of the samples; `index` names its random streams."""
+
+    index: int
+    lamp: Lamp | Point | Beam
+    blockers: tuple[Flat | Sphere, ...]
+    share: float
+
+    def film(self, receivers: np.ndarray, samples: int, seed: int, model: np.floating, threads: int) -> tuple:
+        """Film (n,) of this piece alone and its variance (n,), from `samples` per element."""
+        own_seed = int(seed) * 2**24 + self.index
+
+        def add(first: int, last: int, blocks: tuple[int, int], out: np.ndarray) -> None:
+            estimate(self.lamp, self.blockers, receivers[first:last], first, own_seed, blocks, samples, model, out)
+
+        pivots, totals, squares = spread(add, len(receivers), -(-samples // BLOCK), 3, threads).T
+        return (pivots + totals) / samples, variance_of_mean(totals, squares, samples)
+
+
+def pieces(scene: Scene) -> list[Piece]:
+    """Every piece of every light; samples are shared out by strength."""
+    owned = lamps(scene, reach=REACH * world.build(scene).contact / world.CONTACT)
+    power = np.array([lamp.strength for _, lamp in owned])
+    shares = power / power.sum() if power.any() else np.full(len(owned), 1 / len(owned))
+    return [
+        Piece(index, lamp, tuple(between(scene, scene.film, owner, getattr(lamp, "shape", None))), float(share))
+        for index, ((owner, lamp), share) in enumerate(zip(owned, shares, strict=True))
+    ]
+
+
+class McArea(Estimator):
+    """Plane and points films by the kernel above; camera films by paths of one reflection, which trace the first ray."""
+
+    limits = (no_cylinders, no_solid_angle, no_reflections, no_skies, no_glowing_inside)
+
+    def __init__(self, name: str, threads: int):
+        super().__init__(name, threads)
+        self.model = np.float64(1) if name.endswith("/float64") else np.float32(1)
+
+    def settings(self) -> Mapping[str, Any]:
+        return {"sampler": "independent", "density": "uniform over the light's area, of a sphere over the cap that faces the receiver"}
+
+    def build(self, scene: Scene) -> None:
+        camera = isinstance(scene.film, CameraFilm)
+        self.precision = "float64" if camera else str(self.model.dtype)
+        self.paths = path.Paths(world.build(scene), min(scene.max_bounces, 1), glow=False) if camera else None
+        self.receivers = None if camera else elements.receivers(scene.film)
+        self.pieces = [] if camera else pieces(scene)
+
+    def warm_up(self) -> None:
+        self.render(1, seed=0)
+
+    def render(self, samples: int, seed: int) -> Rendering:
+        if self.paths:
+            return Rendering(*sampled(self.paths.add, self.size, samples, seed, self.threads))
+        counts = [max(1, round(samples * piece.share)) for piece in self.pieces]
+        films = [piece.film(self.receivers, count, seed, self.model, self.threads) for piece, count in zip(self.pieces, counts, strict=True)]
+        known = all(variance is not None for _, variance in films)
+        return Rendering(
+            film=sum((film for film, _ in films), np.zeros(self.size)),
+            samples=sum(counts),
+            variance=sum((variance for _, variance in films), np.zeros(self.size)) if known else None,
+        )

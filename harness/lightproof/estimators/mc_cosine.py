@@ -1,0 +1,11 @@
+"""Monte Carlo over the hemisphere in proportion to the cosine: E ~ (pi/N) sum L(w)."""
+
+from __future__ import annotations
+
+from lightproof.estimators.mc_hemisphere import McHemisphere
+
+
+class McCosine(McHemisphere):
+    """As mc-hemisphere, with density cos/pi per solid angle."""
+
+    power = 1
