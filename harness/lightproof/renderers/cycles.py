@@ -1,0 +1,139 @@
+"""Blender Cycles, through the module `bpy`, on the CPU."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import tempfile
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lightproof.method import Method, Rendering
+from lightproof.renderers import cycles_scene, importing, mesh, transport, views
+from lightproof.renderers.views import View
+from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, Environment, PointLight, Scene
+
+BOUNCES = 1024  # Cycles takes no more
+SMALLEST = 4  # pixels: Blender makes every image at least this wide and high
+
+CYCLES = {
+    "use_adaptive_sampling": False, "use_denoising": False, "time_limit": 0, "sample_clamp_direct": 0, "sample_clamp_indirect": 0,
+    "light_sampling_threshold": 0, "use_light_tree": False, "blur_glossy": 0, "use_fast_gi": False, "use_guiding": False,
+    "pixel_filter_type": "BOX", "sampling_pattern": "TABULATED_SOBOL", "auto_scrambling_distance": False, "use_auto_tile": False,
+    "use_layer_samples": "IGNORE", "film_exposure": 1,
+}
+RENDER = {
+    "engine": "CYCLES", "threads_mode": "FIXED", "use_persistent_data": True, "dither_intensity": 0, "use_compositing": False,
+    "use_sequencer": False, "use_motion_blur": False, "use_simplify": False,
+}
+IMAGE = {"media_type": "IMAGE", "file_format": "OPEN_EXR", "color_mode": "RGB", "color_depth": "32", "exr_codec": "NONE"}
+
+
+class Cycles(Method):
+    """Cycles with everything off that trades exactness for looks."""
+
+    def open(self) -> None:
+        with _quiet():
+            self.bpy = importing.renderer("bpy", "cycles")
+        memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+        self.folder = tempfile.TemporaryDirectory(prefix="lightproof-", dir=memory)
+
+    def version(self) -> str:
+        return self.bpy.app.version_string
+
+    def settings(self) -> Mapping[str, Any]:
+        return {"bounces": self.bounces, "emitters": "lamps" if self.lamps else "meshes", "filter": "box",
+                "sampling_pattern": CYCLES["sampling_pattern"], "sphere_triangles": 20 * 4**mesh.SPHERE}
+
+    def unsupported(self, scene: Scene) -> str | None:
+        for light in scene.lights:
+            if not isinstance(light, AreaLight | PointLight | DirectionalLight | Environment):
+                return "Cycles is not given sun discs or overcast skies yet"
+        return transport.unsupported(scene, BOUNCES) or views.unsupported(scene)
+
+    def prepare(self, scene: Scene) -> Mapping[str, float]:
+        start = time.perf_counter()
+        self.bpy.ops.wm.read_factory_settings(use_empty=True)
+        camera = isinstance(scene.film, CameraFilm)
+        self.bounces = max(transport.reflections(scene, BOUNCES) - camera, 0)
+        self.lamps = len(scene.lights) == 1 and not scene.reflects and not camera
+        self.views = views.views(scene)
+        world = cycles_scene.world(self.bpy, [light for light in scene.lights if isinstance(light, Environment)])
+        contents = self._contents(scene)
+        self.sets = [self._set(view, contents, world) for view in self.views]
+        for one in self.sets:
+            self._image(one, 1, 0)
+        return {"setup": time.perf_counter() - start}
+
+    def render(self, samples: int, seed: int) -> Rendering:
+        block = _block(self.views[0]) ** 2
+        per_pixel = math.ceil(samples / block)
+        seeds = np.random.SeedSequence(seed).generate_state(len(self.views)) >> 1
+        film = [view.elements(views.pooled(self._image(one, per_pixel, each), _block(view)))
+                for view, one, each in zip(self.views, self.sets, seeds, strict=True)]
+        return Rendering(np.concatenate(film), samples=per_pixel * block)
+
+    def _contents(self, scene: Scene) -> Any:
+        """A collection with the lights and surfaces."""
+        collection = self.bpy.data.collections.new("contents")
+        stage = cycles_scene.Stage(self.bpy, collection, self.lamps)
+        for light in scene.lights:
+            stage.light(light)
+        for surface in scene.surfaces:
+            stage.surface(surface if scene.max_bounces else replace(surface, reflectance=0.0))
+        return collection
+
+    def _set(self, view: View, contents: Any, world: Any) -> Any:
+        """A Blender scene with the contents, one camera and its receiver."""
+        made = self.bpy.data.scenes.new("film")
+        made.collection.children.link(contents)
+        stage = cycles_scene.Stage(self.bpy, made.collection, self.lamps)
+        made.world, made.camera = world, stage.camera(view)
+        if view.receiver:
+            stage.receiver(view.receiver.corners, view.receiver.reflectance)
+        self._configure(made, view)
+        return made
+
+    def _configure(self, made: Any, view: View) -> None:
+        columns, rows = (count * _block(view) for count in view.resolution)
+        wide = (view.half[0] / columns) / (view.half[1] / rows)
+        bounces = dict.fromkeys(("max_bounces", "diffuse_bounces", "min_light_bounces"), self.bounces)
+        size = {"resolution_x": columns, "resolution_y": rows, "resolution_percentage": 100, "threads": self.threads,
+                "pixel_aspect_x": max(wide, 1.0), "pixel_aspect_y": max(1 / wide, 1.0)}
+        for owner, fields in ((made.render, RENDER | size), (made.cycles, CYCLES | bounces), (made.render.image_settings, IMAGE)):
+            for field, value in fields.items():
+                setattr(owner, field, value)
+
+    def _image(self, made: Any, samples: int, seed: int) -> np.ndarray:
+        import OpenEXR
+
+        path = Path(self.folder.name) / "film.exr"
+        made.cycles.samples, made.cycles.seed, made.render.filepath = samples, int(seed), str(path)
+        with _quiet():
+            self.bpy.ops.render.render(write_still=True, scene=made.name)
+        with OpenEXR.File(str(path)) as file:
+            return np.array(file.channels()["RGB"].pixels[:, :, 0], float)
+
+
+def _block(view: View) -> int:
+    """Pixels along each side of a film element."""
+    return math.ceil(SMALLEST / min(view.resolution))
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Nothing on file descriptor 1: Blender reports every render there."""
+    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)

@@ -1,0 +1,165 @@
+"""Mitsuba 3: the vectorised LLVM variant, or the scalar one by the option `mitsuba/scalar`.
+
+Its units are radiometric (radiance, intensity, irradiance, per channel) and its rectangles, disks, spheres and cylinders
+are analytic; like a scene's they emit and reflect on the front only.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import math
+import os
+import time
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from lightproof.method import Method, Rendering
+from lightproof.renderers import importing, mitsuba_shapes, transport, views
+from lightproof.renderers.views import View
+from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, PointLight, Scene, Surface
+
+PASS = 1024  # samples per pass: the film adds up in float32 and is off by 5e-5 after 4,096 samples
+WAVEFRONT = 2**24  # paths at a time
+SKY_ROWS = 2**11  # of the map of half a sky, whose horizon is blurred over one row
+LLVM = "karellen-llvm-core"
+
+
+class Mitsuba(Method):
+    """Mitsuba 3 with the cheapest of its integrators that is exact for the scene."""
+
+    def __init__(self, name: str, threads: int):
+        super().__init__(name, threads)
+        self.variant = "scalar_rgb" if name.endswith("/scalar") else "llvm_ad_mono"
+
+    def open(self) -> None:
+        if self.variant.startswith("llvm"):
+            os.environ.setdefault("DRJIT_LIBLLVM_PATH", llvm_library())
+        self.mi = importing.renderer("mitsuba", "mitsuba")
+        self.dr = importing.renderer("drjit", "mitsuba")
+        self.mi.set_variant(self.variant)
+        self.mi.set_log_level(self.mi.LogLevel.Error)
+        self.dr.set_thread_count(self.threads)
+        self.dr.set_flag(self.dr.JitFlag.KernelHistory, True)
+
+    def version(self) -> str:
+        return self.mi.__version__
+
+    def settings(self) -> Mapping[str, Any]:
+        return {"variant": self.variant, "integrator": self.integrator, "sampler": "multijitter", "filter": "box",
+                "samples_per_pass": PASS}
+
+    def unsupported(self, scene: Scene) -> str | None:
+        for light in scene.lights:
+            if not isinstance(light, AreaLight | PointLight | DirectionalLight | Environment):
+                return "Mitsuba is not given sun discs or overcast skies yet"
+        return transport.unsupported(scene) or views.unsupported(scene)
+
+    def prepare(self, scene: Scene) -> Mapping[str, float]:
+        start = time.perf_counter()
+        self.views = views.views(scene)
+        self.integrator = integrator(scene)
+        world = {light.id: self._light(light) for light in scene.lights}
+        world |= {surface.id: self._surface(surface) for surface in scene.surfaces}
+        self.scenes = [self.mi.load_dict(world | self._view(view)) for view in self.views]
+        return {"setup": time.perf_counter() - start}
+
+    def render(self, samples: int, seed: int) -> Rendering:
+        columns, rows = self.views[0].resolution
+        passes = math.ceil(samples / max(1, min(PASS, WAVEFRONT // (columns * rows))))
+        per_pass = strata(math.ceil(samples / passes))
+        seeds = np.random.SeedSequence(seed).generate_state(passes * len(self.views)).reshape(-1, passes)
+        self.dr.kernel_history_clear()
+        film = [view.elements(np.mean([self._image(scene, per_pass, each) for each in row], axis=0))
+                for view, scene, row in zip(self.views, self.scenes, seeds, strict=True)]
+        return Rendering(np.concatenate(film), samples=passes * per_pass, seconds={"compile": self._compiling()})
+
+    def _image(self, scene: Any, samples: int, seed: int) -> np.ndarray:
+        return np.array(self.mi.render(scene, spp=samples, seed=int(seed)), float)[:, :, 0]
+
+    def _compiling(self) -> float:
+        """Seconds spent on kernels since the history was cleared."""
+        return sum(kernel.get("codegen_time", 0) + kernel.get("backend_time", 0) for kernel in self.dr.kernel_history()) / 1e3
+
+    def _view(self, view: View) -> dict[str, Any]:
+        columns, rows = view.resolution
+        film = {"type": "hdrfilm", "width": columns, "height": rows, "rfilter": {"type": "box"}, "component_format": "float32",
+                "pixel_format": "rgb" if self.variant.endswith("rgb") else "luminance"}
+        camera = {**self._lens(view), "near_clip": view.near, "film": film, "sampler": {"type": "multijitter"}}
+        built = {"type": "scene", "integrator": self.integrator, "film-camera": camera}
+        if view.receiver:
+            content = {"bsdf": diffuse(view.receiver.reflectance)}
+            built["film-receiver"] = mitsuba_shapes.rectangle(self.mi, view.receiver.corners, content)
+        return built
+
+    def _lens(self, view: View) -> dict[str, Any]:
+        columns, rows = view.resolution
+        width, height = view.half
+        place = self.mi.ScalarTransform4f().look_at(origin=view.origin, target=view.target, up=view.up)
+        if view.projection == "perspective":
+            return {"type": "perspective", "fov": 2 * math.degrees(math.atan(width)), "fov_axis": "x", "to_world": place}
+        scale = self.mi.ScalarTransform4f().scale([width, height * columns / rows, 1])
+        return {"type": "orthographic", "to_world": place @ scale}
+
+    def _light(self, light: Light) -> Any:
+        match light:
+            case AreaLight():
+                return mitsuba_shapes.build(self.mi, light.shape, {"bsdf": diffuse(0), "emitter": glow(light.radiance)})
+            case PointLight():
+                return {"type": "point", "position": list(light.position), "intensity": light.intensity}
+            case DirectionalLight():
+                return {"type": "directional", "direction": list(light.direction), "irradiance": light.irradiance}
+            case Environment(extent="sphere"):
+                return {"type": "constant", "radiance": light.radiance}
+            case Environment():
+                return self._half_sky(light.radiance)
+
+    def _half_sky(self, radiance: float) -> dict[str, Any]:
+        rows = np.zeros((SKY_ROWS, 4, 3), np.float32)
+        rows[: SKY_ROWS // 2] = radiance
+        upright = self.mi.ScalarTransform4f().rotate([1, 0, 0], 90)
+        return {"type": "envmap", "bitmap": self.mi.Bitmap(rows), "to_world": upright}
+
+    def _surface(self, surface: Surface) -> Any:
+        content = {"bsdf": diffuse(surface.reflectance)} | ({"emitter": glow(surface.radiance)} if surface.radiance else {})
+        return mitsuba_shapes.build(self.mi, surface.shape, content, surface.side == "inside")
+
+
+def diffuse(reflectance: float) -> dict[str, Any]:
+    """A Lambertian front; the back is black."""
+    return {"type": "diffuse", "reflectance": float(reflectance)}
+
+
+def glow(radiance: float) -> dict[str, Any]:
+    """A front that emits."""
+    return {"type": "area", "radiance": radiance}
+
+
+def integrator(scene: Scene) -> dict[str, Any]:
+    """Emitters alone: the path tracer cut at its first vertex. One reflection: the direct integrator, sampling emitters,
+    or directions where light comes from all of them. More: the path tracer, without Russian roulette."""
+    depth = transport.edges(scene)
+    if depth != 2:
+        return {"type": "path", "max_depth": depth, "rr_depth": depth + 1}
+    emitters = [*scene.lights, *(surface for surface in scene.surfaces if surface.radiance)]
+    around = [isinstance(emitter, Environment) or getattr(emitter, "side", "") == "inside" for emitter in emitters]
+    return {"type": "direct", "emitter_samples": int(not all(around)), "bsdf_samples": int(any(around))}
+
+
+def strata(samples: int) -> int:
+    """The number of strata, a near square, that the multijittered sampler makes of `samples`."""
+    rows = math.isqrt(samples)
+    return rows * math.ceil(samples / rows)
+
+
+def llvm_library() -> str:
+    """Path of the LLVM library that the package `karellen-llvm-core` brings; others of the system may abort Dr.Jit."""
+    try:
+        files = importlib.metadata.files(LLVM) or []
+    except importlib.metadata.PackageNotFoundError:
+        raise importing.missing(LLVM, "mitsuba") from None
+    libraries = [file for file in files if file.name.startswith("libLLVM")]
+    if not libraries:
+        raise importing.missing(LLVM, "mitsuba")
+    return str(libraries[0].locate().resolve())
