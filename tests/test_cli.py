@@ -93,6 +93,10 @@ def lightproof(*arguments: object, **options) -> subprocess.Popen:
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
 
 
+def lines_of(path: Path) -> int:
+    return path.read_bytes().count(b"\n")
+
+
 def wait_for(condition) -> None:
     """Wait until something happens; a test that hangs here has failed."""
     while not condition():
@@ -102,7 +106,7 @@ def wait_for(condition) -> None:
 def interrupted(root: Path, out: Path, number: signal.Signals) -> tuple[int, str, Path]:
     """Exit status, output and folder of a run that gets a signal once 20 trials are recorded."""
     running = lightproof("run", "--suite", root, "--out", out, "--threads", 1, *AMPLE, "--with", f"{HONEST}/slow", HONEST)
-    wait_for(lambda: running.poll() is not None or any(path.read_bytes().count(b"\n") >= 20 for path in out.glob("*/trials.jsonl")))
+    wait_for(lambda: running.poll() is not None or any(lines_of(path) >= 20 for path in out.glob("*/trials.jsonl")))
     running.send_signal(number)
     output, _ = running.communicate()
     return running.returncode, output, next(out.iterdir())
@@ -211,7 +215,8 @@ def test_the_nightly_selection():
     home = suite.default()
     assert list(selection.scenes([], ["nightly"], home)) == home.scenes()
     assert selection.methods([], ["nightly"]) == list(METHODS.values())
-    assert {scene.id for scene in selection.scenes([], ["nightly", "shadow"], home)} == {"disk-blocker", "knife-edge", "occluded-square"}
+    shadows = {scene.id for scene in selection.scenes([], ["nightly", "shadow"], home)}
+    assert shadows == {"disk-blocker", "knife-edge", "occluded-square"}
 
 
 def test_methods_by_glob():
@@ -243,7 +248,7 @@ def test_the_list_shows_scenes_and_methods(capsys, monkeypatch):
 
 
 def test_the_doctor_tries_a_renderer(capsys):
-    """An honest renderer of point lights: its version and its mean; one that is not installed: the command; a broken one: exit 3."""
+    """An honest renderer of point lights: its version and mean; one that is not installed: the command; a broken one: exit 3."""
     assert main(["doctor", HONEST, f"{HONEST}/not-installed"]) == 0
     out = capsys.readouterr().out
     assert "misbehaving:Misbehaving 1.0: rendered point-light at 64 samples" in out

@@ -64,8 +64,8 @@ def test_a_film_says_what_it_is(render, tmp_path):
     result = render(entry())
     _, _, header = films.read(next(tmp_path.glob("*.exr")))
     expected = {
-        "scene": "point-light", "case": "base", "digest": SCENE.digest, "quantity": "irradiance", "unit": "W/m\N{SUPERSCRIPT TWO}",
-        "method": "misbehaving", "method_version": "1.0", "samples": "64", "seed": str(result.trial.seed),
+        "scene": "point-light", "case": "base", "digest": SCENE.digest, "quantity": "irradiance",
+        "unit": "W/m\N{SUPERSCRIPT TWO}", "method": "misbehaving", "method_version": "1.0", "samples": "64", "seed": str(result.trial.seed),
     }  # fmt: skip
     assert {key: header[key] for key in expected} == expected
 
@@ -96,7 +96,7 @@ def test_what_is_not_installed_says_how_to_install_it(pool, render):
     ("raises", "while rendering: RuntimeError: out of photons"),
     ("raises-while-preparing", "while preparing the scene: RuntimeError: the scene is too beautiful"),
     ("exits-at-once", "while starting the renderer: its process exited with status 7 before it answered"),
-    ("exits-mid-job", "while rendering: its process exited with status 9 before it answered; it last wrote: the licence has expired"),
+    ("exits-mid-job", "its process exited with status 9 before it answered; it last wrote: the licence has expired"),
     ("calls-exit", "while rendering: its process exited with status 5"),
     ("segfaults", "while rendering: its process was killed by SIGSEGV; it last wrote: "),
     ("floods", "while rendering: OSError: [Errno 27] File too large"),

@@ -81,7 +81,11 @@ def test_the_deterministic_render_one_film_a_step(tmp_path):
 @pytest.mark.parametrize("status", [Status.ERROR, Status.UNSUPPORTED])
 def test_a_trial_that_fails_ends_its_cell_alone(tmp_path, status):
     """The second film of a method fails: that method stops, the other climbs on, everything is recorded."""
-    pool = FakePool({"a": 1e-6, "b": 1e-6}, status=lambda trial: status if (trial.method, trial.replicate) == ("a", 1) else Status.OK)
+
+    def fails(trial: Trial) -> Status:
+        return status if (trial.method, trial.replicate) == ("a", 1) else Status.OK
+
+    pool = FakePool({"a": 1e-6, "b": 1e-6}, status=fails)
     cells = climb(tmp_path, pool, decided_at(1024))
     assert [len(cell.results) for cell in cells] == [2, 12]
     assert len(store.open(tmp_path / RUN.id).results()) == 14

@@ -52,8 +52,8 @@ def test_what_is_recorded_comes_back(tmp_path):
     """A run with two results, opened again: the run, its scenes, and both results in order with their films."""
     record = store.create(tmp_path, RUN, SCENES)
     settings = {"integrator": "direct", "passes": [64, 64]}
-    first = recorded(record, trial(), seconds={"render": 0.25, "setup": 1.5}, version="3.1", settings=settings, precision="float32",
-                     threads=2, samples_lights=True, peak_memory_mb=12.5)  # fmt: skip
+    first = recorded(record, trial(), seconds={"render": 0.25, "setup": 1.5}, version="3.1", settings=settings,
+                     precision="float32", threads=2, samples_lights=True, peak_memory_mb=12.5)  # fmt: skip
     second = Result(trial(256), Status.ERROR, message="out of photons\n\x1b[31m")
     record.append(second)
     again = store.open(tmp_path / RUN.id)
@@ -132,7 +132,7 @@ def test_a_foreign_folder_is_refused(tmp_path, content):
     """A folder that holds no run of this format: refused, and told what would be one."""
     if content is not None:
         (tmp_path / "run.json").write_text(content)
-    with pytest.raises(StoreError, match="lightproof.* made"):
+    with pytest.raises(StoreError, match=r"lightproof.* made"):
         store.open(tmp_path)
 
 
@@ -147,9 +147,9 @@ def test_a_run_without_its_scenes_is_refused(tmp_path):
 def test_an_unwritable_folder_is_refused(tmp_path, parent):
     """A file in place of the output folder: refused before anything runs, and when the run is created."""
     (tmp_path / "file").write_text("")
-    with pytest.raises(StoreError, match="cannot be written.*--out"):
+    with pytest.raises(StoreError, match=r"cannot be written.*--out"):
         store.check_writable(tmp_path / parent)
-    with pytest.raises(StoreError, match="cannot be written.*--out"):
+    with pytest.raises(StoreError, match=r"cannot be written.*--out"):
         store.create(tmp_path / parent, RUN, SCENES)
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from lightproof import verdict
+from lightproof import suite, verdict
 from lightproof.reference import Reference, ReferenceError
 from lightproof.runner import Decision
 from lightproof.scene import Scene
@@ -16,12 +17,31 @@ from lightproof.trial import Result
 from lightproof.verdict import Outcome, Verdict
 
 
+@dataclass(frozen=True)
+class Homes(Suite):
+    """The suites of a run: each scene's reference is where its scene was found, else (the run may come from another machine)
+    in the suite at `root`."""
+
+    homes: Mapping[str, Suite]
+
+    def reference(self, scene: Scene) -> Reference:
+        """The exact light of a scene. Raises ReferenceError where it is missing, stale or broken."""
+        home = self.homes.get(scene.name)
+        return home.reference(scene) if home and home.root.is_dir() else super().reference(scene)
+
+
+def homes(store: Store) -> Homes:
+    """Where the references of a run's scenes are."""
+    roots = store.run.options.get("suites", {})
+    return Homes(suite.default().root, {name: Suite(Path(root)) for name, root in roots.items()})
+
+
 class Judge:
     """Judges the results of one run."""
 
     def __init__(self, store: Store):
         self._scenes = {(scene.id, scene.case): scene for scene in store.scenes}
-        self._suites = {name: Suite(Path(root)) for name, root in store.run.options["suites"].items()}
+        self._suite = homes(store)
         self._reference = cache(self._read_reference)
 
     def judge(self, results: Sequence[Result]) -> Verdict:
@@ -36,6 +56,6 @@ class Judge:
 
     def _read_reference(self, scene: Scene) -> Reference | None:
         try:
-            return self._suites[scene.name].reference(scene)
+            return self._suite.reference(scene)
         except ReferenceError:
             return None

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from lightproof import store, suite
+from lightproof import store
+from lightproof.cli.judging import homes
 from lightproof.cli.run import RUNS
 from lightproof.cli.status import DONE
 from lightproof.suite import Suite
@@ -14,15 +15,15 @@ from lightproof.suite import Suite
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Which run."""
     parser.add_argument("run", nargs="?", metavar="RUN", help=f"folder of a run, or its id in {RUNS} (default: the latest there)")
-    parser.add_argument("--suite", type=Path, metavar="DIR", help="where the references are (default: Lightproof's own)")
+    parser.add_argument("--suite", type=Path, metavar="DIR", help="where the references are (default: where the scenes were)")
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the page and print its path."""
     record = _find(options.run)
-    from lightproof import reporting
+    from lightproof import reporting  # pandas and altair take a second that the other commands need not wait
 
-    print(reporting.write(record.folder, Suite(options.suite) if options.suite else suite.default()))
+    print(reporting.write(record.folder, Suite(options.suite) if options.suite else homes(record)))
     return DONE
 
 

@@ -38,9 +38,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Scenes, methods, budgets."""
     add = parser.add_argument
     add("scenes", nargs="*", metavar="SCENE", help="id, id:case or path of a .toml file (default: every base case)")
-    add("--with", dest="methods", nargs="+", default=[], metavar="METHOD",
+    add("--with", dest="methods", nargs="+", action="extend", default=[], metavar="METHOD",
         help="name, glob, module:Class or file.py:Class (default: each renderer's best configuration)")
-    add("--tags", nargs="+", default=[], metavar="TAG", help="scenes with one of these; nightly: every case, every method")
+    add("--tags", nargs="+", action="extend", default=[], metavar="TAG",
+        help="scenes with one of these; nightly: every case of every scene, every configuration")
     add("--budget", type=seconds, default=180.0, metavar="S", help="of the whole run (default: %(default)g s)")
     add("--cell-budget", type=seconds, default=15.0, metavar="S", help="of a scene and method (default: %(default)g s)")
     add("--replicates", type=count(2), default=16, metavar="N", help="films a step (default, and the rule's: %(default)s)")
@@ -158,9 +159,12 @@ def _carry_out(record: Store, pool: Pool, console: Console, strict: bool) -> int
 
 
 def _sum_up(verdicts: dict[str, Verdict], console: Console) -> None:
+    alike: dict[tuple[Outcome, str], list[str]] = {}
     for name, verdict in verdicts.items():
         if verdict.outcome in (Outcome.FAIL, Outcome.ERROR):
-            console.print(f"[red]{verdict.outcome}[/] {escape(name)}: {escape(verdict.reason)}")
+            alike.setdefault((verdict.outcome, verdict.reason), []).append(name)
+    for (outcome, reason), names in alike.items():
+        console.print(f"[red]{outcome}[/] {escape(', '.join(names))}: {escape(reason)}")
     counts = Counter(verdict.outcome for verdict in verdicts.values())
     console.print(", ".join(f"{counts[outcome]} {outcome}" for outcome in Outcome if counts[outcome]))
 
