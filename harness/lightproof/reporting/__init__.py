@@ -1,1 +1,35 @@
 """Tables, pages and pictures of a run."""
+
+from __future__ import annotations
+
+import functools
+import os
+from pathlib import Path
+
+from lightproof import store
+from lightproof.suite import Suite
+
+
+def write(run_folder: Path, suite: Suite) -> Path:
+    """Judge a run anew and write results.csv, summary.csv and index.html into its folder; returns the page's path.
+
+    Raises StoreError and FilmError where the folder is no run or its record is broken, OSError where it cannot be written.
+    """
+    # Here and not above: pandas and altair take a second to import, which the process that renders a picture need not wait for.
+    from lightproof.reporting import citations, page, tables
+    from lightproof.reporting.evaluation import evaluate
+    from lightproof.reporting.pictures import picture
+
+    evaluation = evaluate(store.open(run_folder), suite)
+    tables.write(tables.results(evaluation), run_folder / "results.csv")
+    tables.write(tables.summary(evaluation), run_folder / "summary.csv")
+    bibliography = citations.read(suite.root / "references" / "references.bib")
+    html = page.render(evaluation, bibliography, functools.partial(picture, cache_folder=_picture_cache()))
+    path = run_folder / "index.html"
+    path.write_text(html, encoding="utf-8")
+    return path
+
+
+def _picture_cache() -> Path:
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return home / "lightproof" / "pictures"

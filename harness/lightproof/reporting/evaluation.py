@@ -1,0 +1,162 @@
+"""A run read back and judged: each (scene, method) with its films and its verdict, recomputed from the raw results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from lightproof import ladder, statistics, verdict
+from lightproof.reference import Reference, ReferenceError
+from lightproof.renderers.registry import METHODS
+from lightproof.scene import Scene
+from lightproof.store import Run, Store
+from lightproof.suite import Suite
+from lightproof.trial import Result, Status
+from lightproof.verdict import Outcome, Step, Verdict
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One method on one scene."""
+
+    scene: Scene
+    method: str
+    results: tuple[Result, ...]
+    reference: Reference | None
+    verdict: Verdict
+
+    @cached_property
+    def final(self) -> list[Result]:
+        """The films of the last complete step: of those with most replicates the one with most samples."""
+        steps: dict[int, list[Result]] = {}
+        for result in self.results:
+            if result.status is Status.OK:
+                steps.setdefault(result.trial.samples, []).append(result)
+        return max(steps.items(), key=lambda step: (len(step[1]), step[0]))[1] if steps else []
+
+    @cached_property
+    def film(self) -> np.ndarray:
+        """Mean over the last step's replicates (n,) in the film's unit."""
+        return np.mean([result.film for result in self.final], axis=0)
+
+    @cached_property
+    def standard_error(self) -> np.ndarray | None:
+        """That of `film` (n,), from the scatter between replicates; None where they do not scatter."""
+        films = np.array([result.film for result in self.final])
+        scatters = len(films) > 1 and (films != films[0]).any()
+        return np.std(films, axis=0, ddof=1) / np.sqrt(len(films)) if scatters else None
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        """What errors are fractions of (n,), in the film's unit."""
+        return ladder.scale(self.scene, self.reference).unit
+
+    @cached_property
+    def error(self) -> np.ndarray:
+        """`film` minus reference (n,), as a fraction of the tolerance scale."""
+        return (self.film - self.reference.value) / self.scale
+
+    @cached_property
+    def deviation(self) -> np.ndarray | None:
+        """`standard_error` (n,) as a fraction of the tolerance scale."""
+        return None if self.standard_error is None else self.standard_error / self.scale
+
+    @cached_property
+    def z_score(self) -> np.ndarray | None:
+        """`film` minus reference (n,) in standard errors; infinite where a certain value is off."""
+        if self.standard_error is None:
+            return None
+        difference = self.film - self.reference.value
+        exact = np.where(difference == 0, 0.0, np.copysign(np.inf, difference))
+        return np.divide(difference, self.standard_error, out=exact, where=self.standard_error > 0)
+
+    @property
+    def drawable(self) -> list[Step]:
+        """The steps that can be drawn on log axes: with a positive time and a positive error."""
+        return [step for step in self.verdict.steps if step.rmse > 0 and step.seconds_render > 0]
+
+    def seconds_to(self, error: float) -> float | None:
+        """Render seconds until a single film's rms error is `error` (a fraction); None beyond what was measured."""
+        steps = self.verdict.steps
+        return statistics.seconds_to(error, [step.seconds_render for step in steps], [step.rmse for step in steps])
+
+    @cached_property
+    def slope(self) -> tuple[float, float, float]:
+        """d log rmse / d log samples with the ends of its 95 % interval; NaN where the steps are too few."""
+        return statistics.slope([step.samples for step in self.drawable], [step.rmse for step in self.drawable])
+
+    @property
+    def efficiency(self) -> float | None:
+        """1 / (variance x seconds) of a single film [1/s] at the last step, variance in squares of the tolerance scale."""
+        if self.reference is None or self.deviation is None:
+            return None
+        variance = len(self.final) * np.mean(self.deviation**2)
+        return float(1 / (variance * np.median([result.seconds["render"] for result in self.final])))
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Every cell of a run, scene by scene in the run's order, methods in the registry's."""
+
+    run: Run
+    cells: tuple[Cell, ...]
+
+    @cached_property
+    def scenes(self) -> list[Scene]:
+        """Each scene once."""
+        return list({cell.scene.name: cell.scene for cell in self.cells}.values())
+
+    @cached_property
+    def methods(self) -> list[str]:
+        """Each method once, the registry's first."""
+        return sorted({cell.method for cell in self.cells}, key=_rank)
+
+    def cell(self, scene: Scene, method: str) -> Cell | None:
+        """The cell of a scene and a method, None where the run did not plan it."""
+        return self._by_name.get((scene.name, method))
+
+    @cached_property
+    def _by_name(self) -> dict[tuple[str, str], Cell]:
+        return {(cell.scene.name, cell.method): cell for cell in self.cells}
+
+
+def _rank(method: str) -> tuple[int, str]:
+    names = list(METHODS)
+    return (names.index(method) if method in METHODS else len(names), method)
+
+
+def evaluate(store: Store, suite: Suite) -> Evaluation:
+    """Judge every (scene, case, method) of a run. References come from `suite`, and those that it lacks from where the run
+    found the scene. Raises StoreError, FilmError."""
+    groups: dict[tuple[str, str], dict[str, list[Result]]] = {}
+    for result in store.results():
+        of_scene = groups.setdefault((result.trial.scene, result.trial.case), {})
+        of_scene.setdefault(result.trial.method, []).append(result)
+    triples = max(ladder.TRIPLES, sum(map(len, groups.values())))
+    cells: list[Cell] = []
+    for scene in store.scenes:
+        reference, missing = _reference(scene, [suite, *_home(scene, store.run)])
+        for method, results in sorted(groups.get((scene.id, scene.case), {}).items(), key=lambda item: _rank(item[0])):
+            judged = verdict.judge(results, reference, scene, triples=triples)
+            if judged.outcome is Outcome.NO_REFERENCE:
+                judged = replace(judged, reason=missing)
+            cells.append(Cell(scene, method, tuple(results), reference, judged))
+    return Evaluation(store.run, tuple(cells))
+
+
+def _home(scene: Scene, run: Run) -> list[Suite]:
+    return [Suite(Path(root)) for name, root in run.options.get("suites", {}).items() if name == scene.name]
+
+
+def _reference(scene: Scene, suites: Sequence[Suite]) -> tuple[Reference | None, str]:
+    missing = ""
+    for suite in suites:
+        try:
+            return suite.reference(scene), ""
+        except ReferenceError as error:
+            missing = str(error)
+    return None, missing

@@ -1,0 +1,248 @@
+"""index.html: one file, right in what it shows, harmless whatever the names, and sound in a browser without a network."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import re
+import shutil
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import small_run
+from PIL import Image
+
+from lightproof import reporting
+from lightproof.method import Unavailable
+from lightproof.reporting import charts, citations, page
+from lightproof.reporting.colours import LIGHT, SIGNED, film_image
+from lightproof.reporting.evaluation import Evaluation, evaluate
+from lightproof.reporting.scene_view import SceneView, round_up
+from lightproof.verdict import Outcome
+
+
+def picture(scene) -> bytes:
+    """A stand-in for the rendered set-up; the camera's scene has none."""
+    if scene.id == "view":
+        raise Unavailable("Mitsuba <3> is missing; pip install 'lightproof[mitsuba]'")
+    buffer = io.BytesIO()
+    Image.new("RGB", (80, 50), "tan").save(buffer, "PNG")
+    return buffer.getvalue()
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return small_run.make(tmp_path_factory.mktemp("page"))
+
+
+@pytest.fixture(scope="module")
+def evaluation(run) -> Evaluation:
+    return evaluate(*run)
+
+
+@pytest.fixture(scope="module")
+def html(run, evaluation) -> str:
+    return page.render(evaluation, citations.read(run[1].root / "references" / "references.bib"), picture)
+
+
+def view(evaluation: Evaluation, scene: str) -> SceneView:
+    cells = [cell for cell in evaluation.cells if cell.scene.id == scene]
+    return SceneView(cells[0].scene, cells, evaluation.methods, "", "", {})
+
+
+def pixels(uri: str) -> np.ndarray:
+    """The image of a data URI as (rows, columns, 3) bytes."""
+    return np.asarray(Image.open(io.BytesIO(base64.b64decode(uri.partition(",")[2]))).convert("RGB"))
+
+
+def test_the_page_says_what_came_out(html):
+    """Of three scenes: exact, unbiased, hostile-named and biased methods pass, pi fails, a crash and a refusal each."""
+    assert "In 12 of 15 judged cases the light is right, in 3 it is wrong; 3 unsupported, 3 ended in an error." in html
+
+
+@pytest.mark.parametrize(("counts", "said"), [
+    ({Outcome.PASS: 2}, "In 2 of 2 judged cases the light is right."),
+    ({Outcome.PASS: 1, Outcome.UNDECIDED: 3}, "In 1 of 4 judged cases the light is right, in 3 it is undecided."),
+    ({Outcome.UNSUPPORTED: 2}, "Nothing could be judged: 2 unsupported."),
+    ({}, "Nothing could be judged: the run is empty."),
+])
+def test_the_answer_in_one_sentence(counts, said):
+    assert page.answer(Counter(counts)) == said
+
+
+def test_findings_are_the_wrong_the_broken_and_the_biased_in_this_order(evaluation):
+    """mc-cosine fails, cycles crashes, path is 0.4 % too bright within a tolerance of 1 %; nothing else is a finding."""
+    found = [cell.method for cell in page.findings(evaluation)]
+    assert found == 3 * ["mc-cosine"] + 3 * ["cycles"] + 3 * ["path"]
+
+
+def test_what_no_finite_run_excludes_is_said_once(html):
+    assert html.count("rare events") == 1
+
+
+def test_unsupported_is_grey_and_says_why(html):
+    """Every badge that says unsupported has that class and no other; its reason stands in the matrix and by the films."""
+    badges = re.findall(r'class="badge ([a-z-]+)"><span aria-hidden="true">.</span> ([a-z ]+)', html)
+    assert {outcome for outcome, word in badges if word.startswith("unsupported")} == {"unsupported"}
+    assert {outcome for outcome, word in badges if word.startswith("pass")} == {"pass"}
+    assert html.count(f"<p>{small_run.REFUSAL}</p>") == 3
+    assert html.count(f"<span>{small_run.REFUSAL}</span>") == 3
+
+
+def test_every_file_is_inside(html):
+    """No image, script or style from elsewhere, and a policy that forbids the browser to ask for one."""
+    markup = re.sub(r"<script>.*?</script>", "", html, flags=re.DOTALL)
+    assert all(source.startswith("data:") for source in re.findall(r'src="([^"]*)"', markup))
+    assert not re.search(r"<link(?! rel=\"icon\" href=\"data:,\")|<iframe|@import|url\(", markup)
+    assert "default-src 'none'" in markup
+
+
+def test_foreign_names_and_messages_are_text(html):
+    """A method named as an image tag, a title with markup, a crash message with an escape sequence."""
+    assert "<img src=x" not in html and "<em>" not in html and "<script>window" not in html
+    assert html.isprintable() or not set(html) & {"\x1b", "\u202e", "\udcff"}
+    assert "&lt;em&gt;&amp; more&lt;/em&gt;" in html and "\\x1b[31m&lt;script&gt;" in html
+
+
+def test_a_picture_that_cannot_be_made_is_explained(html):
+    assert "No picture of the set-up: Mitsuba &lt;3&gt; is missing; pip install &#39;lightproof[mitsuba]&#39;" in html
+
+
+def test_sources_are_resolved(html):
+    """The reference cites ramp2026, which the bibliography knows with a DOI."""
+    assert "Ada Ramp, Bo Slope. On &lt;ramps&gt;. 2026" in html and 'href="https://doi.org/10.1000/1"' in html
+
+
+def test_a_missing_bibliography_is_no_error(tmp_path):
+    assert citations.read(tmp_path / "references.bib") == {}
+
+
+def test_a_plane_film_has_its_first_row_at_the_bottom(evaluation):
+    """Light rises along the rows: a plane film is brightest on top, a camera image at the bottom."""
+    assert pixels(view(evaluation, "floor").exact).sum(axis=2).mean(axis=1).argmax() == 0
+    assert pixels(view(evaluation, "view").exact).sum(axis=2).mean(axis=1).argmax() == 5
+
+
+def test_colours_are_the_map_s_at_both_ends_and_beyond():
+    """Below, at and above a scale from 0 to 1."""
+    film = small_run.scene("spots").film
+    ends = pixels(film_image(np.array([-3.0, 7.0]), film, LIGHT, 0.0, 1.0))[0]
+    assert [bytes(colour).hex() for colour in ends] == [LIGHT.anchors[0], LIGHT.anchors[-1]]
+
+
+def test_all_methods_of_a_scene_share_one_scale(evaluation):
+    """The exact film shows no error, one pi times too bright the end of the scale; errors are drawn to twice the tolerance."""
+    of_scene = view(evaluation, "floor")
+    error = {cell.method: pixels(of_scene.images(cell)[1]) for cell in of_scene.measured}
+    assert (error["analytic"] == SIGNED.palette[127]).all()
+    assert (error["mc-cosine"] == SIGNED.palette[-1]).all()
+    assert [(bar.low, bar.high) for bar in of_scene.bars] == [(0.0, 1.0), (-2.0, 2.0), (-4.0, 4.0)]
+
+
+def test_errors_in_standard_errors_need_noise(evaluation):
+    """Sixteen noisy films have a third image, an exact single one has not; the noisy ones' errors are about one."""
+    cells = {cell.method: cell for cell in evaluation.cells if cell.scene.id == "floor"}
+    assert cells["analytic"].z_score is None
+    assert len(view(evaluation, "floor").images(cells["analytic"])) == 2
+    assert np.std(cells["mc-area"].z_score) == pytest.approx(1, abs=0.3)
+
+
+def test_a_certain_value_that_is_off_is_infinitely_many_standard_errors_off(evaluation):
+    """Two elements: one right and one wrong without noise, in a film whose replicates differ elsewhere."""
+    cell = next(cell for cell in evaluation.cells if (cell.scene.id, cell.method) == ("spots", "mc-area"))
+    certain = replace(cell, results=tuple(replace(result, film=np.array([result.film[0], 0.75])) for result in cell.results))
+    assert np.isfinite(certain.z_score[0]) and certain.z_score[1] == -np.inf
+
+
+def test_the_chart_has_a_point_for_each_step_and_a_line_at_the_tolerance(evaluation):
+    """Five methods, four steps; what is below the floor is drawn on it."""
+    cells = [cell for cell in evaluation.cells if cell.scene.id == "floor"]
+    chart = charts.error_against_time(cells, evaluation.methods, 0.01)
+    tolerance, points = sorted(chart["datasets"].values(), key=len)
+    assert tolerance == [{"error": 1.0, "text": "tolerance 1 %"}]
+    assert Counter(point["method"].partition(" ")[0] for point in points)["mc-area"] == 4
+    assert min(point["error"] for point in points) == charts.FLOOR
+    assert charts.error_against_time([], evaluation.methods, 0.01) is None
+
+
+@pytest.mark.parametrize(("value", "end"), [(0.97, 1.0), (1.0, 1.0), (1.01, 1.2), (83.0, 100.0), (0.0, 1.0), (3e-7, 3e-7)])
+def test_scales_end_at_round_numbers(value, end):
+    assert round_up(value) == pytest.approx(end)
+
+
+def test_write_leaves_three_files_in_the_run(run, monkeypatch):
+    """The page and both tables, in the run's own folder."""
+    from lightproof.reporting import pictures
+
+    monkeypatch.setattr(pictures, "picture", lambda scene, cache_folder: picture(scene))
+    record, suite = run
+    path = reporting.write(record.folder, suite)
+    assert path == record.folder / "index.html"
+    assert {"results.csv", "summary.csv", "index.html"} <= {file.name for file in record.folder.iterdir()}
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Headless Chromium that logs what the page says and what it asks the network for."""
+    from selenium import webdriver
+
+    chromium, driver = (shutil.which(name) for name in ("chromium", "chromedriver"))
+    if not chromium or not driver:
+        pytest.skip("Chromium is not installed; apt-get install chromium chromium-driver")
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    browser = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
+    yield browser
+    browser.quit()
+
+
+@pytest.fixture(scope="module")
+def opened(browser, html, tmp_path_factory):
+    """The page on a phone 390 pixels wide, with all its charts drawn."""
+    from selenium.webdriver.support.wait import WebDriverWait
+
+    path = tmp_path_factory.mktemp("browser") / "index.html"
+    path.write_text(html, encoding="utf-8")
+    phone = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", phone)
+    browser.get(path.as_uri())
+    drawn = "return document.querySelectorAll('.chart svg').length"
+    WebDriverWait(browser, 30).until(lambda page: page.execute_script(drawn) == 3)
+    return browser
+
+
+def test_the_browser_reports_no_error(opened):
+    assert opened.get_log("browser") == []
+    assert opened.execute_script("return window.hacked") is None
+
+
+def test_the_browser_asks_the_network_for_nothing(opened):
+    """The page itself is all that is fetched."""
+    events = [json.loads(entry["message"])["message"] for entry in opened.get_log("performance")]
+    asked = [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
+    assert {url.partition(":")[0] for url in asked} <= {"file", "data"} and sum(url.startswith("file") for url in asked) == 1
+
+
+def test_every_picture_is_there(opened):
+    """Two pictures of a set-up, two exact films, and for five methods three images (the exact one: two) on two scenes."""
+    widths = opened.execute_script("return [...document.images].map((image) => image.naturalWidth)")
+    assert len(widths) == 2 + 2 + 2 * (4 * 3 + 2)
+    assert all(width > 0 for width in widths)
+
+
+def test_the_page_is_no_wider_than_a_phone(opened):
+    assert opened.execute_script("return document.documentElement.scrollWidth") == 390
+
+
+def test_a_tap_on_a_verdict_shows_its_reason(opened):
+    """The refusal of pyrender is hidden until its badge is pressed."""
+    shown = "return [...document.querySelectorAll('.why:popover-open')].map((box) => box.innerText)"
+    assert opened.execute_script(shown) == []
+    opened.execute_script("document.querySelector('.matrix button:has(.unsupported)').click()")
+    assert small_run.REFUSAL in opened.execute_script(shown)[0]
