@@ -1,0 +1,72 @@
+"""A camera that sees nothing but a lit, diffuse floor: radiance rho E / pi, averaged over each pixel's square."""
+
+from __future__ import annotations
+
+from flint import arb
+
+from lightproof import geometry, scene
+from lightproof.certify import direct, quadrature
+from lightproof.certify.balls import Ball, CannotCertify, Element, Point, Vector, cross, dot, exact, minus, plus, point, times
+from lightproof.certify.camera import Camera
+from lightproof.certify.planes import Plane
+from lightproof.certify.polygon import area_vector
+from lightproof.scene import Scene
+
+
+def solve(scene_: Scene) -> Element:
+    """Mean radiance of each pixel. Raises CannotCertify."""
+    floor = _floor(scene_)
+    corners = [point(corner) for corner in floor.shape.vertices]
+    plane = Plane(area_vector(corners), dot(area_vector(corners), corners[0]))
+    camera = Camera.of(scene_.film)
+    _check_lights(scene_, plane, plane.height(camera.origin))
+    lights = direct.fields(scene_, plane) if scene_.max_bounces != 0 else []
+    factor = exact(floor.reflectance) / arb.pi()
+
+    def element(index: int) -> arb:
+        def hit(s: Ball, t: Ball) -> Vector:
+            origin, along = camera.ray(index, s, t)
+            return plus(origin, times(along, -plane.height(origin) / dot(plane.normal, along)))
+
+        _check_pixel([hit(arb(s), arb(t)) for s in (-1, 1) for t in (-1, 1)], corners, plane.normal)
+        formulas = _formulas(lights, hit)
+        return quadrature.mean(lambda s, t: factor * sum((formula(x) for formula in formulas for x in [hit(s, t)]), arb(0)))
+
+    return element
+
+
+def _floor(scene_: Scene) -> scene.Surface:
+    if len(scene_.surfaces) != 1 or not isinstance(scene_.surfaces[0].shape, geometry.Polygon):
+        raise CannotCertify("a camera is covered where it looks at one polygon, or from inside a sphere")
+    return scene_.surfaces[0]
+
+
+def _check_lights(scene_: Scene, floor: Plane, camera: Ball) -> None:
+    """No ray from the camera down to the floor can meet a light that is nowhere lower than the camera."""
+    if not camera > 0:
+        raise CannotCertify("the camera is behind the floor")
+    for light in scene_.lights:
+        if isinstance(light, scene.AreaLight):
+            shape = light.shape
+            if not isinstance(shape, geometry.Polygon) or any(floor.height(point(corner)) < camera for corner in shape.vertices):
+                raise CannotCertify(f"light '{light.id}' may stand between the camera and the floor")
+
+
+def _check_pixel(hits: list[Vector], corners: list[Point], normal: Point) -> None:
+    """All four corner rays go down and meet the convex floor."""
+    for x in hits:
+        for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
+            if not dot(normal, cross(minus(end, start), minus(x, start))) > 0:
+                raise CannotCertify("a pixel sees past the floor")
+
+
+def _formulas(lights: list[direct.Field], hit) -> list[direct.Formula]:
+    """The lights' formulas, which must hold over the whole pixel."""
+    whole = hit(arb(0, 1), arb(0, 1))
+    middle = tuple(exact(float(component)) for component in hit(arb(0), arb(0)))
+    for light in lights:
+        if light.events is None or any(event.height(whole).contains(0) for event in light.events):
+            raise CannotCertify("a shadow's edge crosses a pixel")
+    return [light.near(middle) for light in lights]
+
+
