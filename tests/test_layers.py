@@ -14,7 +14,7 @@ LAYERS = [
     {"radiometry", "geometry", "statistics"},
     {"scene"},
     {"scene_file"},
-    {"trial", "reference", "films", "method"},
+    {"trial", "reference", "films", "method", "sketch"},
     {"suite", "certify", "estimators"},
     {"renderers"},
     {"store", "diagnose", "ladder"},

@@ -8,7 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from lightproof import ladder
+from lightproof import diagnose, ladder
 from lightproof.ladder import Rung
 from lightproof.reference import Reference
 from lightproof.scene import Scene
@@ -99,7 +99,8 @@ def judge(results: Sequence[Result], reference: Reference | None, scene: Scene, 
     findings = [_find(rung, _before(rung, rungs)) for rung in rungs]
     final = _final(rungs, findings, errors)
     steps = tuple(_step(rung, finding) for rung, finding in zip(rungs, findings, strict=True))
-    return Verdict(final.outcome, final.message, scene.tolerance, steps, final.samples_needed, final.biased)
+    reason = _diagnosed(final, rungs, reference, scene)
+    return Verdict(final.outcome, reason, scene.tolerance, steps, final.samples_needed, final.biased)
 
 
 def _sound(result: Result, scene: Scene) -> Result:
@@ -225,6 +226,15 @@ def _final(rungs: Sequence[Rung], findings: Sequence[_Finding], errors: Sequence
     complete = [finding for rung, finding in zip(rungs, findings, strict=True) if rung.complete]
     final = complete[-1] if complete else _Finding(Outcome.UNDECIDED, "no step of the ladder is complete")
     return _error(errors) if errors and final.outcome is Outcome.UNDECIDED else final
+
+
+def _diagnosed(final: _Finding, rungs: Sequence[Rung], reference: Reference, scene: Scene) -> str:
+    """The reason, with the likely mistake behind a failing film where it can be told."""
+    if final.outcome is not Outcome.FAIL:
+        return final.message
+    last = [rung for rung in rungs if rung.complete][-1]
+    mistake = diagnose.diagnose(last.films.mean(axis=0), last.element_error, reference.value, scene)
+    return f"{final.message}; {mistake}" if mistake else final.message
 
 
 def _step(rung: Rung, finding: _Finding) -> Step:
