@@ -63,7 +63,7 @@ class Misbehaving(Method):
 
 
 def _raises(method: Misbehaving, film: np.ndarray) -> None:
-    raise RuntimeError("out of photons")
+    raise RuntimeError("out of photons\n\x1b[2J(really)")
 
 
 def _exits(method: Misbehaving, film: np.ndarray) -> None:

@@ -32,8 +32,9 @@ def trial(method: Entry, replicate: int = 0, scene=SCENE) -> Trial:
     return Trial(scene.id, scene.case, scene.digest, method.name, samples=64, replicate=replicate)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def pool():
+    """One for all tests: what a fault does to it, the tests that follow have to live with."""
     with Pool(threads=1, file_limit=FILE_LIMIT) as pool:
         yield pool
 
@@ -65,17 +66,20 @@ def test_a_film_says_what_it_is(render, tmp_path):
     _, _, header = films.read(next(tmp_path.glob("*.exr")))
     expected = {
         "scene": "point-light", "case": "base", "digest": SCENE.digest, "quantity": "irradiance",
-        "unit": "W/m\N{SUPERSCRIPT TWO}", "method": "misbehaving", "method_version": "1.0", "samples": "64", "seed": str(result.trial.seed),
+        "unit": "W/m\N{SUPERSCRIPT TWO}", "method": "misbehaving", "method_version": "1.0", "samples": "64",
+        "seed": str(result.trial.seed),
     }  # fmt: skip
     assert {key: header[key] for key in expected} == expected
 
 
 def test_a_worker_stays_up_between_trials(pool, render):
     """Two replicates and a second method of the same family: one process, and two different films."""
-    first, second, other = render(entry()), render(entry(), replicate=1), render(entry("identical"))
+    first = render(entry())
+    worker = pool._workers["misbehaving"]
+    second, other = render(entry(), replicate=1), render(entry("identical"))
     assert {result.status for result in (first, second, other)} == {Status.OK}
     assert (first.film != second.film).all()
-    assert len(pool._workers) == 1
+    assert pool._workers == {"misbehaving": worker}
 
 
 def test_what_a_method_cannot_do_is_unsupported(render):
@@ -93,7 +97,7 @@ def test_what_is_not_installed_says_how_to_install_it(pool, render):
 
 
 @pytest.mark.parametrize(("fault", "message"), [
-    ("raises", "while rendering: RuntimeError: out of photons"),
+    ("raises", "while rendering: RuntimeError: out of photons [2J(really)"),
     ("raises-while-preparing", "while preparing the scene: RuntimeError: the scene is too beautiful"),
     ("exits-at-once", "while starting the renderer: its process exited with status 7 before it answered"),
     ("exits-mid-job", "its process exited with status 9 before it answered; it last wrote: the licence has expired"),
@@ -134,17 +138,18 @@ def test_a_renderer_that_hangs_is_killed(pool, render, fault):
 def test_a_crash_is_retried_once(render, tmp_path, monkeypatch):
     """A renderer that crashes once: the trial succeeds at the second attempt, and says so."""
     monkeypatch.setenv("MISBEHAVING_FLAG", str(tmp_path / "flag"))
-    result = render(entry("crashes-once"))
+    result = render(entry("crashes-once", worker="a process that knows the flag"))
     assert result.status is Status.OK
     assert "the first attempt failed while rendering: its process was killed by SIGSEGV" in result.message
 
 
-def test_children_die_with_their_renderer(render, pool, tmp_path, monkeypatch):
+def test_children_die_with_their_renderer(tmp_path, monkeypatch):
     """A renderer that leaves a child in a session of its own: killed when the worker is."""
     monkeypatch.setenv("MISBEHAVING_FLAG", str(tmp_path / "child"))
-    assert render(entry("leaves-a-child")).status is Status.OK
-    child = psutil.Process(int((tmp_path / "child").read_text()))
-    pool.__exit__()
+    leaver = entry("leaves-a-child")
+    with Pool(threads=1) as pool:
+        assert pool.render(leaver, SCENE, trial(leaver), tmp_path / "film.exr", 20).status is Status.OK
+        child = psutil.Process(int((tmp_path / "child").read_text()))
     psutil.wait_procs([child], timeout=10)
     assert not child.is_running() or child.status() == psutil.STATUS_ZOMBIE
 
@@ -173,6 +178,7 @@ pool.render(entry("hangs"), SCENE, trial(entry("hangs")), Path({str(tmp_path)!r}
 
 def test_a_method_that_fails_to_start_is_not_started_again(pool, monkeypatch):
     """A renderer that exits as it starts: the same complaint twice, from one process."""
+    monkeypatch.setattr(pool, "_unable", {})
     with pytest.raises(WorkerDied) as first:
         pool.open(entry("exits-at-once"))
     monkeypatch.setattr("lightproof.renderers.pool.Worker", None)
@@ -183,14 +189,13 @@ def test_a_method_that_fails_to_start_is_not_started_again(pool, monkeypatch):
 
 @pytest.mark.parametrize(("target", "message"), [
     ("no_such_module:Renderer", "ModuleNotFoundError"),
-    ("misbehaving:NoSuchClass", "AttributeError"),
+    ("lightproof.method:NoSuchClass", "AttributeError"),
     ("/no/such/file.py:Renderer", "FileNotFoundError"),
 ])  # fmt: skip
-def test_a_target_that_is_not_there(pool, monkeypatch, target, message):
+def test_a_target_that_is_not_there(pool, target, message):
     """A class that cannot be imported: an error that says why."""
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
     with pytest.raises(MethodFailed, match=message):
-        pool.open(Entry("missing", target, worker="missing"))
+        pool.open(Entry(target, target, worker="misbehaving"))
 
 
 def test_a_film_of_another_scene_is_refused(render, tmp_path):

@@ -103,6 +103,16 @@ def test_a_lost_film_is_named(tmp_path):
         record.results()
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is always full")
+def test_a_full_disk_is_named(tmp_path):
+    """A record on a full disk: refused with what to do about it."""
+    record = store.create(tmp_path, RUN, SCENES)
+    with Path("/dev/full").open("wb", buffering=0) as full:
+        record.__dict__["_lines"] = full
+        with pytest.raises(StoreError, match=r"No space left.*--resume"):
+            record.append(Result(trial(), Status.ERROR))
+
+
 def test_one_writer_at_a_time(tmp_path):
     """Two processes that carry on with the same run: the second is refused."""
     record = store.create(tmp_path, RUN, SCENES)

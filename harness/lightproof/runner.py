@@ -143,7 +143,7 @@ class Runner:
     """Runs cells, the cheapest undecided step first, and records each result as it comes.
 
     `budget` [s] is that of all cells together, `decide` gets all results of one cell, `tell` hears of the progress. Raises
-    StoreError or OSError where the record cannot be written.
+    StoreError where the record cannot be written.
     """
 
     def __init__(self, cells: Sequence[Cell], budget: float, store: Store, pool: Pool,

@@ -12,12 +12,12 @@ import numpy as np
 from lightproof import films
 from lightproof.films import FilmError
 from lightproof.method import Unavailable
-from lightproof.renderers.process import LARGEST_FILE, Worker, WorkerDied, WorkerTimeout
+from lightproof.renderers.process import LARGEST_FILE, Worker, WorkerDied, WorkerTimeout, plain
 from lightproof.renderers.registry import Entry
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status, Trial
 
-PATIENCE = 120.0
+PATIENCE = 60.0
 DOING = {"open": "starting the renderer", "prepare": "preparing the scene", "render": "rendering"}
 
 
@@ -85,7 +85,7 @@ class Pool:
     def _start(self, entry: Entry) -> About:
         answer = self._ask(entry, "open", self._patience, target=entry.target, threads=self.threads)
         if "unavailable" in answer:
-            raise Unavailable(answer["unavailable"])
+            raise Unavailable(plain(answer["unavailable"]))
         return About(**answer)
 
     def render(self, entry: Entry, scene: Scene, trial: Trial, film: Path, timeout: float) -> Result:
@@ -143,7 +143,7 @@ class Pool:
             return prepared
         answer = self._ask(entry, "prepare", self._patience, scene_id=scene.id, case=scene.case, table=scene.to_table())
         if "unsupported" in answer:
-            raise Unsupported(answer["unsupported"])
+            raise Unsupported(plain(answer["unsupported"]))
         self._prepared[entry.name] = Preparation(scene.name, scene.digest, **answer)
         return self._prepared[entry.name]
 
@@ -156,7 +156,7 @@ class Pool:
             self._discard(entry.worker)
             raise type(error)(f"while {DOING[op]}: {error}") from None
         if "error" in answer:
-            raise MethodFailed(f"while {DOING[op]}: {answer['error']}")
+            raise MethodFailed(f"while {DOING[op]}: {plain(answer['error'])}")
         return answer
 
     def _discard(self, family: str) -> None:

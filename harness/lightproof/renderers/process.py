@@ -20,6 +20,7 @@ MARK = "LIGHTPROOF_WORKER"
 LARGEST_FILE = 1 << 29
 POLL = 0.2
 QUOTED_LINES = 3
+LONGEST_LINE = 400
 
 
 class WorkerDied(Exception):
@@ -28,6 +29,12 @@ class WorkerDied(Exception):
 
 class WorkerTimeout(WorkerDied):
     """The worker did not answer in time."""
+
+
+def plain(text: str) -> str:
+    """What somebody's renderer says, as one line of bearable length that no terminal obeys."""
+    line = " ".join("".join(char if char.isprintable() else " " for char in text).split())
+    return line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]}..."
 
 
 class Worker:
@@ -101,7 +108,7 @@ class Worker:
     def _last_words(self) -> str:
         size = os.fstat(self._log.fileno()).st_size
         tail = os.pread(self._log.fileno(), 4096, max(0, size - 4096)).decode(errors="replace")
-        lines = [line.strip() for line in tail.splitlines() if line.strip()]
+        lines = [plain(line) for line in tail.splitlines() if line.strip()]
         return f"; it last wrote: {' | '.join(lines[-QUOTED_LINES:])}" if lines else "; it wrote nothing"
 
     def close(self) -> None:
