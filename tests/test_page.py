@@ -9,6 +9,7 @@ import re
 import shutil
 from collections import Counter
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -173,6 +174,22 @@ def test_scales_end_at_round_numbers(value, end):
     assert round_up(value) == pytest.approx(end)
 
 
+def interrupted(record, suite, trials: int) -> Evaluation:
+    """The run as a kill after some trials would have left it."""
+    return evaluate(SimpleNamespace(run=record.run, scenes=record.scenes, results=lambda: record.results()[:trials]), suite)
+
+
+@pytest.mark.parametrize(("trials", "said"), [
+    (0, "Nothing could be judged: the run is empty."),
+    (5, "In 1 of 2 judged cases the light is right, in 1 it is undecided."),
+])
+def test_a_run_cut_short_has_a_page(run, trials, said):
+    """After no trial, and after the exact method's four films and the first of sixteen of mc-area: all three scenes are there."""
+    html = page.render(interrupted(*run, trials), {}, picture)
+    assert said in html
+    assert [f"The {scene.id} " in html for scene in small_run.SCENES] == [True, True, True]
+
+
 def test_write_leaves_three_files_in_the_run(run, monkeypatch):
     """The page and both tables, in the run's own folder."""
     from lightproof.reporting import pictures
@@ -212,14 +229,20 @@ def opened(browser, html, tmp_path_factory):
     phone = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", phone)
     browser.get(path.as_uri())
-    drawn = "return document.querySelectorAll('.chart svg').length"
-    WebDriverWait(browser, 30).until(lambda page: page.execute_script(drawn) == 3)
+    drawn = "return [...document.querySelectorAll('.chart')].every((chart) => chart.querySelector('svg'))"
+    WebDriverWait(browser, 30).until(lambda page: page.execute_script(drawn))
     return browser
 
 
 def test_the_browser_reports_no_error(opened):
     assert opened.get_log("browser") == []
     assert opened.execute_script("return window.hacked") is None
+
+
+def test_every_chart_has_a_mark_for_each_measurement(opened):
+    """Cost: four passing methods (one of them biased) on three scenes; error against time: five methods of four steps."""
+    marks = "(chart) => chart.querySelectorAll('.mark-symbol.role-mark path').length"
+    assert opened.execute_script(f"return [...document.querySelectorAll('.chart')].map({marks})") == [12, 20, 20, 20]
 
 
 def test_the_browser_asks_the_network_for_nothing(opened):

@@ -17,6 +17,13 @@ def test_number(value, said):
     assert wording.number(value) == said
 
 
+@pytest.mark.parametrize(("value", "said"), [(0.01, "1.0 %"), (1.234, "123 %"), (3.3e-5, "0.0033 %"), (1e-9, "< 0.0001 %"),
+                                             (0.0, "0 %"), (math.nan, "—")])
+def test_percent(value, said):
+    """Fractions; two digits, and never a power of ten."""
+    assert wording.percent(value) == said
+
+
 @pytest.mark.parametrize(("low", "high", "said"), [
     (-0.0002, 0.0004, "0.010 ± 0.030 %"),  # two digits of the half width
     (1.0300, 1.0310, "103.050 ± 0.050 %"),
@@ -24,7 +31,7 @@ def test_number(value, said):
     (3.9e-4, 3.9e-4, "0.039 %"),  # no width worth a digit
     (-1e-17, 1e-17, "0 %"),
     (2e-9, 2e-9, "< 0.0001 %"),
-    (-2e-9, -2e-9, "> −0.0001 %"),
+    (-2e-9, -2e-9, "< 0.0001 %"),
     (math.nan, math.nan, "—"),
 ])
 def test_interval(low, high, said):

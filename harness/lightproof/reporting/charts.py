@@ -11,7 +11,9 @@ import pandas as pd
 
 from lightproof.reporting.evaluation import Cell
 from lightproof.reporting.wording import percent, seconds
+from lightproof.verdict import Outcome
 
+ROW = 26  # pixels
 FLOOR = 1e-4  # per cent; smaller errors are drawn here, or an exact method would flatten all others
 # Okabe and Ito's, with a blue that also shows on black, and a few more; 12 colours times 5 shapes tell 60 methods apart.
 COLOURS = ("#1f83c7", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c6bb1", "#a6761d", "#5b8c3a", "#e0457b",
@@ -42,6 +44,34 @@ def error_against_time(cells: Sequence[Cell], methods: Sequence[str], tolerance:
         tooltip=["method", "samples:Q", "time", "rms error", "slope"],
     ).add_params(chosen)
     return _finished(alt.layer(*_tolerance(tolerance), lines), height=320)
+
+
+def time_to_one_percent(cells: Sequence[Cell], methods: Sequence[str]) -> dict[str, Any] | None:
+    """What a right answer costs: for each scene the render time to 1 % error of every method that passes there; hollow where
+    the ladder began below it, so that the time is a bound. None where no method passes."""
+    rows = [_cost(cell, found) for cell in cells if cell.verdict.outcome is Outcome.PASS and (found := cell.seconds_to(0.01))]
+    if not rows:
+        return None
+    data = pd.DataFrame(rows)
+    look = [(method, place) for place, method in enumerate(methods) if method in set(data.method)]
+    chosen = alt.selection_point(fields=["method"], bind="legend")
+    points = alt.Chart(data).mark_point(size=70, strokeWidth=1.75).encode(
+        x=alt.X("seconds:Q", title="render time to 1 % error", scale=_log(data.seconds),
+                axis=_decades(data.seconds, SECONDS)),
+        y=alt.Y("scene:N", title=None, sort=None, axis=alt.Axis(grid=True, labelLimit=220)),
+        color=alt.Color("method:N", scale=_range(look, COLOURS), legend=LEGEND),
+        shape=alt.Shape("method:N", scale=_range(look, SHAPES), legend=LEGEND),
+        fill=alt.condition("datum.bound", alt.value("transparent"), alt.Fill("method:N", scale=_range(look, COLOURS))),
+        opacity=alt.condition(chosen, alt.value(1), alt.value(0.15)),
+        tooltip=["scene", "method", "time"],
+    ).add_params(chosen)
+    return _finished(points, height=ROW * data.scene.nunique())
+
+
+def _cost(cell: Cell, found: float) -> dict[str, Any]:
+    bound = cell.verdict.steps[0].rmse <= 0.01
+    return {"scene": cell.scene.name, "method": cell.method, "seconds": found, "bound": bound,
+            "time": f"{'at most ' if bound else ''}{seconds(found)}"}
 
 
 def _rows(cell: Cell) -> Iterable[dict[str, Any]]:
@@ -94,7 +124,7 @@ def _decades(values: pd.Series, label: str = "format(datum.value, '~r')") -> alt
     return alt.Axis(values=_powers(values), labelExpr=label, labelOverlap=True)
 
 
-def _finished(chart: alt.LayerChart, height: int) -> dict[str, Any]:
+def _finished(chart: alt.Chart | alt.LayerChart, height: int) -> dict[str, Any]:
     ink = {"labelColor": "currentColor", "titleColor": "currentColor", "domainColor": "currentColor", "tickColor": "currentColor"}
     config = {
         "background": "transparent",

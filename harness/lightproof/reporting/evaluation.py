@@ -76,8 +76,8 @@ class Cell:
 
     @property
     def drawable(self) -> list[Step]:
-        """The steps that can be drawn on log axes: with a positive time and a positive error."""
-        return [step for step in self.verdict.steps if step.rmse > 0 and step.seconds_render > 0]
+        """The steps whose error and time are known; a time below the clock's tick is not."""
+        return [step for step in self.verdict.steps if step.rmse >= 0 and step.seconds_render > 0]
 
     def seconds_to(self, error: float) -> float | None:
         """Render seconds until a single film's rms error is `error` (a fraction); None beyond what was measured."""
@@ -100,15 +100,11 @@ class Cell:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Every cell of a run, scene by scene in the run's order, methods in the registry's."""
+    """Every cell that a run has begun, scene by scene in the run's order, methods in the registry's."""
 
     run: Run
+    scenes: tuple[Scene, ...]
     cells: tuple[Cell, ...]
-
-    @cached_property
-    def scenes(self) -> list[Scene]:
-        """Each scene once."""
-        return list({cell.scene.name: cell.scene for cell in self.cells}.values())
 
     @cached_property
     def methods(self) -> list[str]:
@@ -116,7 +112,7 @@ class Evaluation:
         return sorted({cell.method for cell in self.cells}, key=_rank)
 
     def cell(self, scene: Scene, method: str) -> Cell | None:
-        """The cell of a scene and a method, None where the run did not plan it."""
+        """The cell of a scene and a method, None where the run has no result."""
         return self._by_name.get((scene.name, method))
 
     @cached_property
@@ -145,7 +141,7 @@ def evaluate(store: Store, suite: Suite) -> Evaluation:
             if judged.outcome is Outcome.NO_REFERENCE:
                 judged = replace(judged, reason=missing)
             cells.append(Cell(scene, method, tuple(results), reference, judged))
-    return Evaluation(store.run, tuple(cells))
+    return Evaluation(store.run, store.scenes, tuple(cells))
 
 
 def _home(scene: Scene, run: Run) -> list[Suite]:

@@ -37,6 +37,7 @@ def render(evaluation: Evaluation, bibliography: Mapping[str, Citation], picture
         counts=counts,
         answer=answer(counts),
         findings=findings(evaluation),
+        cost=charts.time_to_one_percent(evaluation.cells, evaluation.methods),
         bundle=Markup(vl_convert.javascript_bundle()),
     )
 

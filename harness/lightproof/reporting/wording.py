@@ -32,9 +32,11 @@ def superscript(value: int) -> str:
 
 
 def percent(value: float, digits: int = 2) -> str:
-    """A fraction as per cent, never in powers of ten: what is below a ten-thousandth of a per cent is said to be so."""
+    """A fraction as per cent, never in powers of ten: of less than a ten-thousandth of a per cent only that."""
+    if not math.isfinite(value):
+        return number(value)
     if abs(value) < 1e-6:
-        return "0 %" if value == 0 else "< 0.0001 %" if value > 0 else "> \N{MINUS SIGN}0.0001 %"
+        return "0 %" if value == 0 else "< 0.0001 %"
     return f"{_fixed(100 * value, max(0, digits - 1 - _exponent(100 * value)))} %"
 
 
@@ -42,7 +44,7 @@ def interval(low: float, high: float) -> str:
     """An interval of fractions as centre ± half width in per cent, to two digits of the half width and at most four decimals."""
     centre, half = 50 * (low + high), 50 * (high - low)
     if not math.isfinite(centre + half):
-        return "\N{EM DASH}"
+        return number(math.nan)
     if half < 5e-5:
         return percent(centre / 100)
     decimals = min(4, max(0, 1 - _exponent(half)))
