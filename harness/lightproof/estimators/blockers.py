@@ -8,27 +8,29 @@ import numpy as np
 from numba.extending import overload
 
 from lightproof import geometry
-from lightproof.estimators import elements
 from lightproof.estimators.compiled import fast
 from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, placed, support
 from lightproof.estimators.vectors import dot, like, sub
-from lightproof.scene import AreaLight, PlaneFilm, PointsFilm, Scene, Surface
+from lightproof.scene import AreaLight, Scene, Surface
 
 CONTACT = 1e-12  # of a distance: what lies no farther in front of a plane than this coincides with it
 
 
-def between(scene: Scene, film: PlaneFilm | PointsFilm, own: str, light: tuple | None) -> list[Flat | Sphere]:
-    """What can cast a shadow of one piece `light` (None: of a point or a beam) of the light or surface `own`: every other
-    surface and light but those that lie behind the film's plane or behind the light's."""
+Plane = tuple[np.ndarray, np.ndarray]  # a point and a unit normal
+
+
+def between(scene: Scene, own: str, light: Flat | Sphere | None, receiving: Plane | None) -> list[Flat | Sphere]:
+    """What can cast a shadow of one piece `light` (None: of a point or a beam) of the light or surface `own` on the plane
+    `receiving` (None: on anything): every other surface and light but those that lie behind a plane of the two."""
     solid = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, AreaLight | Surface) and item.id != own]
     pieces = [piece for item in solid for piece in parts(item.shape) if not encloses(item)]
-    planes = [plane for plane in (elements.flat(film), light_plane(light)) if plane is not None]
+    planes = [plane for plane in (receiving, None if light is None else plane_of(light)) if plane is not None]
     return [piece for piece in pieces if all(reaches(piece, *plane) for plane in planes)]
 
 
-def light_plane(light: tuple | None) -> tuple[np.ndarray, np.ndarray] | None:
-    """A point and the normal of a flat light's plane."""
-    return None if light is None or isinstance(light, Sphere) else (np.array(light.center), np.array(light.normal))
+def plane_of(piece: Flat | Sphere) -> Plane | None:
+    """The plane of a flat piece."""
+    return None if isinstance(piece, Sphere) else (np.array(piece.center), np.array(piece.normal))
 
 
 def reaches(piece: Flat | Sphere, point: np.ndarray, normal: np.ndarray) -> bool:

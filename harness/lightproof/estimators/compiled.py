@@ -34,7 +34,7 @@ def digest(folder: Path) -> str:
 
 
 def cache_folder() -> Path | None:
-    """Where compiled kernels are kept, $XDG_CACHE_HOME (or ~/.cache)/lightproof/kernels-<digest>; None if it cannot be written."""
+    """Where compiled kernels are kept, kernels-<digest> in $XDG_CACHE_HOME/lightproof; None where it cannot be written."""
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     folder = base / "lightproof" / f"kernels-{digest(SOURCES)[:16]}"
     try:

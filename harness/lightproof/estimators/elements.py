@@ -37,11 +37,3 @@ def flat(film: PlaneFilm | PointsFilm) -> tuple[np.ndarray, np.ndarray] | None:
     normal, point = rows[0, 9:12], rows[0, CENTER]
     level = np.abs((rows[:, CENTER] - point) @ normal).max() == 0 and (rows[:, 9:12] == normal).all()
     return (point, normal) if level else None
-
-
-def extent(film: PlaneFilm | PointsFilm) -> np.ndarray:
-    """Points (k, 3) whose convex hull holds the film."""
-    if isinstance(film, PointsFilm):
-        return np.array(film.positions)
-    origin, u, v = np.array(film.origin), np.array(film.u), np.array(film.v)
-    return np.array([origin, origin + u, origin + v, origin + u + v])

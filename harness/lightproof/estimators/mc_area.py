@@ -99,10 +99,11 @@ class Piece:
 def pieces(scene: Scene) -> list[Piece]:
     """Every piece of every light; samples are shared out by strength."""
     owned = lamps(scene, reach=REACH * world.build(scene).contact / world.CONTACT)
+    level = elements.flat(scene.film)
     power = np.array([lamp.strength for _, lamp in owned])
     shares = power / power.sum() if power.any() else np.full(len(owned), 1 / len(owned))
     return [
-        Piece(index, lamp, tuple(between(scene, scene.film, owner, getattr(lamp, "shape", None))), float(share))
+        Piece(index, lamp, tuple(between(scene, owner, getattr(lamp, "shape", None), level)), float(share))
         for index, ((owner, lamp), share) in enumerate(zip(owned, shares, strict=True))
     ]
 
@@ -117,7 +118,7 @@ class McArea(Estimator):
         self.model = np.float64(1) if name.endswith("/float64") else np.float32(1)
 
     def settings(self) -> Mapping[str, Any]:
-        return {"sampler": "independent", "density": "uniform over the light's area, of a sphere over the cap that faces the receiver"}
+        return {"sampler": "independent", "density": "uniform over the light; of a sphere, over the cap that faces the receiver"}
 
     def build(self, scene: Scene) -> None:
         camera = isinstance(scene.film, CameraFilm)
@@ -133,10 +134,7 @@ class McArea(Estimator):
         if self.paths:
             return Rendering(*sampled(self.paths.add, self.size, samples, seed, self.threads))
         counts = [max(1, round(samples * piece.share)) for piece in self.pieces]
-        films = [piece.film(self.receivers, count, seed, self.model, self.threads) for piece, count in zip(self.pieces, counts, strict=True)]
-        known = all(variance is not None for _, variance in films)
-        return Rendering(
-            film=sum((film for film, _ in films), np.zeros(self.size)),
-            samples=sum(counts),
-            variance=sum((variance for _, variance in films), np.zeros(self.size)) if known else None,
-        )
+        shared = zip(self.pieces, counts, strict=True)
+        drawn = [piece.film(self.receivers, count, seed, self.model, self.threads) for piece, count in shared]
+        films, variances = zip(*drawn, strict=True)
+        return Rendering(sum(films), sum(counts), None if any(one is None for one in variances) else sum(variances))

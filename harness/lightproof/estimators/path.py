@@ -11,8 +11,8 @@ import numpy as np
 from lightproof.estimators.compiled import strict, strict_kernel
 from lightproof.estimators.directions import cosine_power, oriented
 from lightproof.estimators.estimator import Sampler
-from lightproof.estimators.limits import no_cylinders, no_solid_angle
 from lightproof.estimators.lighting import direct
+from lightproof.estimators.limits import no_cylinders, no_solid_angle
 from lightproof.estimators.rng import mix64, stream, uniform
 from lightproof.estimators.tracing import front_normal, nearest, receive, sky_radiance
 from lightproof.estimators.vectors import along, dot

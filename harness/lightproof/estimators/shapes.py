@@ -9,11 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
 from numba.extending import overload
 
 from lightproof import geometry
-from lightproof.estimators.compiled import strict
 from lightproof.estimators.vectors import like, sub, turned
 from lightproof.geometry import Vec3
 

@@ -88,10 +88,10 @@ def nearest(items, x, w, near):
 def free(items, x, d, contact):
     """Whether nothing stands on the segment from x to x + d, its ends excepted."""
     margin = contact / math.sqrt(dot(d, d))
+    blocked = False
     for i in range(len(items)):
-        if distance(items[i], x, d, margin) < 1 - margin:
-            return False
-    return True
+        blocked |= distance(items[i], x, d, margin) < 1 - margin
+    return not blocked
 
 
 @strict

@@ -1,8 +1,8 @@
 """A scene as arrays, for the kernels that trace rays through any scene: one row per piece of a surface or light.
 
-Columns of an item: kind, centre, u, v, normal, dual u, dual v (as in `shapes`), radius, radiance, reflectance, side (+1 the
-front is out, -1 in), area, whether its light is sampled point by point, whether it is a light. Rows of a sky: kind, radiance, direction,
-cosine of the half-angle. Rows of a far or point light: kind, position or direction, strength.
+Columns of an item: kind, centre, u, v, normal, dual u, dual v (as in `shapes`), radius, radiance, reflectance, side (+1: the
+front is out, -1: in), area, whether its light is sampled point by point, whether it is a light. Rows of a sky: kind,
+radiance, direction, cosine of the half-angle. Rows of a bulb (point light or beam): kind, position or direction, strength.
 """
 
 from __future__ import annotations

@@ -1,0 +1,67 @@
+"""Which direct light has a closed form: what stands between a light and what receives it decides."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lightproof import scene as scenes
+from lightproof.estimators import elements
+from lightproof.estimators.blockers import Plane, between, plane_of
+from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, support
+from lightproof.estimators.world import DISK, KIND, NORMAL, RADIANCE
+from lightproof.scene import CameraFilm, Scene
+
+PARALLEL = 1e-12  # 1 - |cosine| of two disks that count as parallel
+
+
+def direct_unsupported(scene: Scene) -> str | None:
+    """Why some light has no closed form on some receiver; None where every one has."""
+    for item in (*scene.lights, *scene.surfaces):
+        for piece in emitting_pieces(item):
+            for plane in receiving_planes(scene):
+                reason = piece_unsupported(piece, between(scene, item.id, piece, plane), plane, item.id)
+                if reason:
+                    return reason
+    return None
+
+
+def emitting_pieces(item: scenes.Light | scenes.Surface) -> list[Flat | Sphere | None]:
+    """The pieces of what shines, None for a sky; nothing for what is black, nor for points and beams (their shadows are traced)."""
+    if isinstance(item, scenes.AreaLight | scenes.Surface):
+        return parts(item.shape) if item.radiance else []
+    return [] if isinstance(item, scenes.PointLight | scenes.DirectionalLight) else [None]
+
+
+def receiving_planes(scene: Scene) -> list[Plane | None]:
+    """The planes that receive: the film's, or of a camera's film those of the surfaces that reflect."""
+    if not isinstance(scene.film, CameraFilm):
+        return [elements.flat(scene.film)]
+    return [plane_of(piece) for surface in scene.surfaces if surface.reflectance for piece in parts(surface.shape)]
+
+
+def piece_unsupported(light: Flat | Sphere | None, blockers: list[Flat | Sphere], plane: Plane | None, name: str) -> str | None:
+    """Why the shadow of `blockers` has no closed form for one piece of the light `name`."""
+    polygons = all(isinstance(piece, Parallelogram | Triangle) for piece in (light, *blockers))
+    if polygons or not blockers:
+        return None
+    if isinstance(light, Disk) and len(blockers) == 1 and isinstance(blockers[0], Disk):
+        return disks_unsupported(light, blockers[0], plane, name)
+    return f"no closed form for what shadows '{name}'; there is one for polygons before a polygon, a disk before a parallel disk"
+
+
+def disks_unsupported(light: Disk, blocker: Disk, plane: Plane | None, name: str) -> str | None:
+    if 1 - abs(np.dot(light.normal, blocker.normal)) > PARALLEL:
+        return f"no closed form for a disk before '{name}' that is not parallel to it"
+    if plane is None or any(-support(disk, -plane[1]) < plane[0] @ plane[1] for disk in (light, blocker)):
+        return f"no closed form for '{name}' behind a disk where the receiver's plane cuts either"
+    return None
+
+
+def shades(items: np.ndarray) -> np.ndarray:
+    """For every item (m,) the index of the disk that stands before it where it is a disk that shines, else -1."""
+    disks = np.flatnonzero(items[:, KIND] == DISK)
+    shade = np.full(len(items), -1)
+    for k in disks[items[disks, RADIANCE] > 0]:
+        before = [j for j in disks if j != k and (items[j, 1:4] - items[k, 1:4]) @ items[k, NORMAL:NORMAL + 3] > 0]
+        shade[k] = before[0] if before else -1
+    return shade

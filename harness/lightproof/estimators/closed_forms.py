@@ -1,0 +1,60 @@
+"""Irradiance per radiance, in closed form: disk, sphere, distant disc and skies, in forms that do not cancel."""
+
+from __future__ import annotations
+
+import math
+
+from lightproof.estimators.compiled import strict
+from lightproof.estimators.vectors import along, dot, norm
+
+
+@strict
+def disk(center, normal, radius, n):
+    """A disk wholly above the horizon; `center` is relative to the receiver, whose normal is n.
+
+    Its vector irradiance has a part along the disk's axis, (pi/2)(1 - P/S), and one towards that axis, 2 pi h a r^2/(S (S + Q)),
+    with P, Q = h^2 + a^2 -+ r^2 and S^2 = Q^2 - 4 r^2 a^2 (Howell's catalogue, disk and parallel or perpendicular element)."""
+    h = -dot(center, normal)
+    if h <= 0:
+        return 0.0
+    towards = along(center, h, normal)
+    a, r2 = norm(towards), radius * radius
+    p, q = h * h + a * a - r2, h * h + a * a + r2
+    s = math.hypot(p, 2 * radius * h)
+    upright = 2 * r2 * h * h / (s * (s + p)) if p > 0 else (s - p) / (2 * s)
+    return math.pi * (2 * h * r2 / (s * (s + q)) * dot(towards, n) - upright * dot(normal, n))
+
+
+@strict
+def sphere(d, z, radius):
+    """A sphere at distance d, its centre z above the receiver's plane: whole, cut by the horizon (Snyder 1996), or below."""
+    if z >= radius:
+        return math.pi * radius * radius * z / (d * d * d)
+    if z <= -radius or d <= radius:
+        return 0.0
+    cosine, h2 = z / d, (d / radius) * (d / radius)
+    x = math.sqrt((d - radius) * (d + radius)) / radius
+    w = math.sqrt((radius - z) * (radius + z)) / radius
+    return (cosine * math.atan2(w, -x * cosine) - x * w) / h2 + math.atan2(w, x)
+
+
+@strict
+def sun(cosine, cosine_half_angle):
+    """A distant disc: a sphere at distance 1 whose radius is the sine of the half-angle."""
+    radius = math.sqrt((1 - cosine_half_angle) * (1 + cosine_half_angle))
+    return sphere(1.0, cosine, radius)
+
+
+@strict
+def upper_sky(tilt_cosine):
+    """A uniform sky above z = 0 on a plane whose normal has this third component: pi (1 + cos b)/2."""
+    return math.pi * (1 + tilt_cosine) / 2
+
+
+@strict
+def overcast_sky(tilt_cosine):
+    """The CIE overcast sky of zenith radiance 1: (1/3) of a uniform sky's, and (2/3) of the integral of sin(elevation) cos(theta)
+    over the lune that sky and receiver share, (2/3)(sin b + (pi - b) cos b)."""
+    tilt_sine = math.sqrt(max(1 - tilt_cosine * tilt_cosine, 0.0))
+    tilt = math.atan2(tilt_sine, tilt_cosine)
+    return upper_sky(tilt_cosine) / 3 + 4 * (tilt_sine + (math.pi - tilt) * tilt_cosine) / 9
