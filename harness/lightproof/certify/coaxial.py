@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 
 from flint import acb, arb
 
@@ -65,6 +66,11 @@ class Shadow:
         return self.blocker.height / self.light.height
 
     @property
+    def umbra(self) -> bool:
+        """Whether the blocker hides all of the light from near the axis."""
+        return bool(self.light.radius * self.scale <= self.blocker.radius)
+
+    @property
     def rims(self) -> tuple[Number, Number]:
         """The distances at which the two rims are seen to touch, from inside and from outside."""
         small, large = sorted((self.blocker.radius, self.light.radius * self.scale))
@@ -72,8 +78,7 @@ class Shadow:
 
     def inner(self, r: Ball) -> Ball:
         """Hidden irradiance per radiance [sr] where one disk covers the other: the smaller one's."""
-        covered = self.light.radius * self.scale <= self.blocker.radius
-        return (self.light if covered else self.blocker).whole(r)
+        return (self.light if self.umbra else self.blocker).whole(r)
 
     def lens(self, r: Ball) -> Ball:
         """Hidden irradiance per radiance [sr] where the rims are seen to cross."""
@@ -89,12 +94,16 @@ def solve(scene_: Scene) -> Element:
     frame = Frame.of(scene_.film)
     light, blocker = scene_.lights[0], scene_.surfaces[0]
     axis = _check(frame, light.shape, blocker.shape)
-    open_light = [direct.Field(lambda x, formula=emitters.disk_light(light.shape, light.radiance, frame.plane): formula)]
+    formula = emitters.disk_light(light.shape, light.radiance, frame.plane)
+    open_light = [direct.Field(lambda x: formula)]
     shadow = Shadow(*(_disk(shape, frame) for shape in (light.shape, blocker.shape)))
     hidden = cache(lambda column, row: _corner(shadow, *_offset(frame, axis, column, row)))
 
     def element(index: int) -> arb:
         row, column = divmod(index, frame.columns)
+        corners = [root(sum(x * x for x in _offset(frame, axis, column + i, row + j))) for i in (0, 1) for j in (0, 1)]
+        if shadow.umbra and all(corner < shadow.rims[0] for corner in corners):
+            return arb(0)
         taken = hidden(column + 1, row + 1) - hidden(column, row + 1) - hidden(column + 1, row) + hidden(column, row)
         cell = root(dot(frame.u, frame.u) * dot(frame.v, frame.v)) / (frame.columns * frame.rows)
         return direct.mean_over(frame, open_light, frame.cell(index)) - exact(light.radiance) * taken / cell
@@ -134,7 +143,7 @@ def _corner(shadow: Shadow, a: arb, b: arb) -> arb:
     inner, outer = shadow.rims
     ends = [arb(0), *sorted((arb(x) for x in (a, b, root(a * a + b * b), inner, outer)), key=float)]
     last = min(float(outer), float(root(a * a + b * b)))
-    pieces = [(p, q) for p, q in zip(ends, ends[1:], strict=False) if float(q) <= last and float(p) < float(q)]
+    pieces = [(p, q) for p, q in pairwise(ends) if float(q) <= last and float(p) < float(q)]
     return sum((_piece(shadow, (a, b), p, q) + _piece(shadow, (a, b), q, p) for p, q in pieces), arb(0))
 
 

@@ -56,7 +56,7 @@ def _field(light: scene.Light, blockers: list[Shape], receiver: Plane) -> Field:
     if isinstance(light, AreaLight) and isinstance(light.shape, geometry.Polygon):
         return _polygon(light.shape, light.radiance, blockers, receiver)
     if blockers:
-        raise CannotCertify(f"something may stand between light '{light.id}' and the film; shadows of polygon lights alone are covered")
+        raise CannotCertify(f"something may stand before light '{light.id}'; shadows are covered for polygon lights only")
     if isinstance(light, AreaLight):
         return _round(light, receiver)
     formula = UNBLOCKED[type(light)](light, receiver)

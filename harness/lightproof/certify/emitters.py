@@ -11,7 +11,8 @@ from collections.abc import Callable
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify.balls import Ball, CannotCertify, Number, Point, Rational, Vector, arctan, cross, dot, exact, minus, point, root, unit
+from lightproof.certify import balls
+from lightproof.certify.balls import Ball, CannotCertify, Number, Point, Rational, Vector, cross, dot, exact, minus, point, root, unit
 from lightproof.certify.planes import Plane
 
 Formula = Callable[[Vector], Ball]  # receiver -> irradiance [W/m2]
@@ -104,8 +105,8 @@ def _sphere(radius: Number, squared: Ball, height: arb, above: str) -> Ball:
     if above == "whole":
         return arb.pi() * share * height / distance
     x, w = root(squared / (radius * radius) - 1), root(1 - (height / radius) ** 2)
-    arc = arb.pi() / 2 + arctan(x * height / (distance * w))
-    return share * (height / distance * arc - x * w) + arctan(w / x)
+    arc = arb.pi() / 2 + balls.arctan(x * height / (distance * w))
+    return share * (height / distance * arc - x * w) + balls.arctan(w / x)
 
 
 def disk_light(shape: geometry.Disk, radiance: float, receiver: Plane) -> Formula:

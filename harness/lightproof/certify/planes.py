@@ -129,8 +129,8 @@ class Patch:
     def of(cls, corners: Sequence[Flat]) -> Patch:
         """The patch with these four corners, counter-clockwise; two neighbours may be equal."""
         signs = ((1, 1, 1, 1), (-1, 1, 1, -1), (-1, -1, 1, 1), (1, -1, 1, -1))
-        return cls(*(tuple(sum(sign * x for sign, x in zip(row, axis, strict=True)) / fmpq(4) for axis in zip(*corners, strict=True))
-                     for row in signs))
+        axes = list(zip(*corners, strict=True))
+        return cls(*(tuple(_signed(row, axis) / 4 for axis in axes) for row in signs))
 
     def at(self, s: Ball, t: Ball) -> tuple[Ball, Ball]:
         """The position of (s, t)."""
@@ -141,6 +141,10 @@ class Patch:
         along_s = [a + t * c for a, c in zip(self.a, self.c, strict=True)]
         along_t = [b + s * c for b, c in zip(self.b, self.c, strict=True)]
         return along_s[0] * along_t[1] - along_s[1] * along_t[0]
+
+
+def _signed(signs: Sequence[int], numbers: Sequence[Rational]) -> Rational:
+    return sum((sign * number for sign, number in zip(signs, numbers, strict=True)), fmpq(0))
 
 
 def patches(region: Region) -> list[Patch]:

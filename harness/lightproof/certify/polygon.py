@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from functools import reduce
+from itertools import pairwise
 
 from flint import arb
 
@@ -31,11 +33,7 @@ def loop(corners: Sequence[Point], receiver: Point) -> Loop:
 def area_vector(corners: Sequence[Point]) -> Point:
     """Twice the vector area of a polygon, on its front."""
     spokes = [minus(corner, corners[0]) for corner in corners[1:]]
-    total = spokes[0]
-    total = minus(total, total)
-    for a, b in zip(spokes, spokes[1:], strict=False):
-        total = plus(total, cross(a, b))
-    return total
+    return reduce(plus, (cross(a, b) for a, b in pairwise(spokes)))
 
 
 def clip(corners: Sequence[Point], normal: Point, offset: Number) -> tuple[Point, ...]:
@@ -56,7 +54,7 @@ def clip(corners: Sequence[Point], normal: Point, offset: Number) -> tuple[Point
 def convex_parts(corners: Sequence[Point]) -> Parts:
     """Convex polygons with signs that add up to the polygon: itself, or the triangles of a fan."""
     front = area_vector(corners)
-    triangles = [(corners[0], b, c) for b, c in zip(corners[1:], corners[2:], strict=False)]
+    triangles = [(corners[0], b, c) for b, c in pairwise(corners[1:])]
     turns = [dot(front, area_vector((corners[i - 2], corners[i - 1], corners[i]))) for i in range(len(corners))]
     if all(turn >= 0 for turn in turns):
         return ((1, tuple(corners)),)

@@ -18,7 +18,7 @@ ON_THE_WALL = exact(1e-9)  # of the radius: how far a receiver's binary64 positi
 
 def covers(scene_: Scene) -> bool:
     """Whether everything happens inside one sphere."""
-    return len(scene_.surfaces) == 1 and scene_.surfaces[0].side == "inside" and isinstance(scene_.surfaces[0].shape, geometry.Sphere)
+    return [(type(surface.shape), surface.side) for surface in scene_.surfaces] == [(geometry.Sphere, "inside")]
 
 
 def solve(scene_: Scene) -> Element:
