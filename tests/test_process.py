@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -157,18 +157,17 @@ def test_children_die_with_their_renderer(tmp_path, monkeypatch):
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells a process that its parent died")
 def test_workers_die_with_the_harness(tmp_path):
     """A harness killed by SIGKILL while its worker hangs: the worker is gone too."""
-    import subprocess
-
     script = f"""
+import sys
 from pathlib import Path
+sys.path.insert(0, {str(Path(__file__).parent)!r})
 from test_process import *
 pool = Pool(threads=1)
 pool.open(entry("hangs"))
 print(pool._workers["misbehaving"]._process.pid, flush=True)
 pool.render(entry("hangs"), SCENE, trial(entry("hangs")), Path({str(tmp_path)!r}) / "film.exr", 3600)
 """
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
-    harness = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, env=environment)
+    harness = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE)
     worker = psutil.Process(int(harness.stdout.readline()))
     harness.kill()
     harness.wait()

@@ -32,7 +32,7 @@ class FakePool:
     def render(self, entry, scene, trial, film, timeout) -> Result:
         self.asked.append(trial)
         self.timeouts.append(timeout)
-        seconds = {"setup": self.setup, "render": self.cost[entry.name] * trial.samples}
+        seconds = {"setup": self.setup, "compile": 50 * self.setup, "render": self.cost[entry.name] * trial.samples}
         return Result(trial, self.status(trial), samples=trial.samples, seconds=seconds, deterministic=self.deterministic)
 
 
@@ -123,8 +123,8 @@ def test_the_budget_of_a_cell(tmp_path):
     assert a.seconds <= 10 and b.seconds <= 10
 
 
-def test_preparing_counts_once_a_step(tmp_path):
-    """2 s of set-up and four films of 1 s: a step costs 6 s, and of 20 s two steps are all that fits."""
+def test_set_up_counts_once_a_step_and_compiling_never(tmp_path):
+    """2 s of set-up, 100 s of compiling and four films of 1 s: steps cost 6 s and 18 s, and of 30 s two are all that fits."""
     pool = FakePool({"a": 1 / 64}, setup=2)
     (cell,) = climb(tmp_path, pool, lambda results: UNDECIDED, cell_budget=30)
     assert (cell.height, cell.seconds) == (2, 6 + 18)

@@ -1,7 +1,8 @@
 """Climb the ladder of every (scene, method) until its verdict is decided or its budget is spent.
 
 The runner asks `decide` whether a cell's results decide it; it knows no reference and no rule. Time is counted in the
-seconds that the results themselves record, so a resumed run goes on exactly where it stopped.
+seconds of set-up and rendering that the results themselves record, so a resumed run goes on exactly where it stopped;
+compiling does not count, so cold caches change no verdict.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ class Decision:
 @dataclass
 class Cell:
     """One method on one scene: its results so far by step of the ladder (samples per element), and what they decide.
-    `budget` [s] is what preparing and rendering may take; `replicates` is the number of films a step."""
+    `budget` [s] is what set-up and rendering may take; `replicates` is the number of films a step."""
 
     scene: Scene
     entry: Entry
@@ -61,8 +62,8 @@ class Cell:
 
     @property
     def seconds(self) -> float:
-        """What the cell has cost: every render, and the preparation of each step once."""
-        return sum(_preparation(step) + sum(_renders(step)) for step in self.steps.values())
+        """What the cell has cost: every render, and the set-up of each step once."""
+        return sum(_setup(step) + sum(_renders(step)) for step in self.steps.values())
 
     @property
     def height(self) -> int:
@@ -81,7 +82,7 @@ class Cell:
         step, before = self.steps.get(self.next_samples, []), self.steps.get(self.next_samples // FACTOR, [])
         if len(step) > 1:
             return min(_renders(step)) * (self._films - len(step))
-        return _preparation(before) + FACTOR * sum(_renders(before))
+        return _setup(before) + FACTOR * sum(_renders(before))
 
     @property
     def wants_more(self) -> bool:
@@ -124,8 +125,8 @@ def _renders(step: Sequence[Result]) -> list[float]:
     return [result.seconds.get("render", 0.0) for result in step]
 
 
-def _preparation(step: Sequence[Result]) -> float:
-    return max((result.seconds.get("setup", 0.0) + result.seconds.get("compile", 0.0) for result in step), default=0.0)
+def _setup(step: Sequence[Result]) -> float:
+    return max((result.seconds.get("setup", 0.0) for result in step), default=0.0)
 
 
 @dataclass(frozen=True)
