@@ -183,16 +183,18 @@ class Rung:
 
     @property
     def unlit(self) -> np.ndarray:
-        """Where light is due and no sample of a method that does not aim at lights has reached any, (J + 1 + n,)."""
+        """Where light is due and no sample of a method that does not aim at lights has reached any, (J + 1 + n,); the mean
+        of a film with such a tile lacks its light too."""
         black = ~self.scale.pooled(np.abs(self.films).max(axis=0)).astype(bool)
-        return black & self.scale.lit & (not self.results[0].samples_lights)
+        unlit = black & self.scale.lit & (not self.results[0].samples_lights)
+        unlit[self.scale.tiles] |= unlit[:self.scale.tiles].any()
+        return unlit
 
     @cached_property
     def votes(self) -> np.ndarray:
         """-1 or +1 where an interval votes for a bias below or above the tolerance, else 0, (J + 1 + n,)."""
-        if self.noiseless:
-            return self.outside * ~self.unlit
-        return self.outside * ((self.standard_error > 0) & (self.noise <= WIDEST_VOTE * self.tolerance))
+        steady = self.noiseless | ((self.standard_error > 0) & (self.noise <= WIDEST_VOTE * self.tolerance))
+        return self.outside * (steady & ~(self.unlit & (self.bias < 0)))
 
     @property
     def passes(self) -> bool:
@@ -223,8 +225,11 @@ class Rung:
         return float(np.sqrt((self.errors**2).mean()))
 
     def stopped_shrinking(self, before: Rung) -> np.ndarray:
-        """Where the error without noise is no longer falling, and the film's as a whole is not either, (J + 1 + n,)."""
-        return (np.abs(self.bias) > SHRINKING * np.abs(before.bias)) & (self.rmse > SHRINKING * before.rmse)
+        """Where the error without noise falls no longer, (J + 1 + n,): neither there nor, for sums over grids converge by fits
+        and starts, over the whole film, which has moved by less than errors that fall to SHRINKING of themselves do."""
+        moved = np.sqrt(((self.errors[0] - before.errors[0]) ** 2).mean())
+        settled = moved < (1 / SHRINKING - 1) * self.rmse
+        return (np.abs(self.bias) > SHRINKING * np.abs(before.bias)) & settled
 
     def agrees(self, before: Rung) -> bool:
         """Whether two steps without noise give the same film."""

@@ -161,7 +161,7 @@ def _find_noiseless(rung: Rung, before: Rung | None) -> _Finding:
     if before is not None:
         confirmed = rung.votes * ((rung.votes == before.votes) & rung.stopped_shrinking(before))
     if confirmed.any():
-        return _Finding(Outcome.FAIL, _accusation(rung, confirmed))
+        return _Finding(Outcome.FAIL, f"{_accusation(rung, confirmed)} at two steps")
     return _Finding(Outcome.UNDECIDED, _doubt(rung), ladder.FACTOR * rung.samples)
 
 
@@ -170,7 +170,7 @@ def _find_noisy(rung: Rung, before: Rung | None) -> _Finding:
         return _passed(rung, before)
     confirmed = rung.votes * (rung.votes == before.votes) if before is not None else np.zeros_like(rung.votes)
     if confirmed.any():
-        return _Finding(Outcome.FAIL, _accusation(rung, confirmed))
+        return _Finding(Outcome.FAIL, f"{_accusation(rung, confirmed)} at two steps")
     needed = ladder.FACTOR * rung.samples if rung.votes.any() else rung.samples_needed
     return _Finding(Outcome.UNDECIDED, _doubt(rung), needed)
 
@@ -190,25 +190,28 @@ def _mean_side(rung: Rung) -> int:
 
 
 def _margin(rung: Rung) -> str:
-    return f"every tile within {rung.reach[:rung.scale.tiles + 1].max():.2g} of the exact light; tolerance {rung.tolerance:g}"
+    return f"every tile within {100 * rung.reach[:rung.scale.tiles + 1].max():.2g} % of the exact light"
 
 
-def _accusation(rung: Rung, confirmed: np.ndarray) -> str:
-    """The film's mean where it is outside, else the interval farthest out."""
+def _accusation(rung: Rung, votes: np.ndarray) -> str:
+    """What is off: the film's mean where it votes, else the interval farthest out."""
     mean = rung.scale.tiles
-    worst = mean if confirmed[mean] else int(np.argmax(np.abs(confirmed) * (np.abs(rung.bias) - rung.half_width)))
-    also = np.count_nonzero(confirmed[:mean])
-    return f"{rung.scale.place(worst)} is off by {_interval(rung, worst)} at two steps, {also} of {mean} tiles with it"
+    worst = mean if votes[mean] else int(np.argmax(np.abs(votes) * (np.abs(rung.bias) - rung.half_width)))
+    tiles = f" ({np.count_nonzero(votes[:mean])} of {mean} tiles are)" if votes[:mean].any() else ""
+    return f"{rung.scale.place(worst)} is off by {_interval(rung, worst)}{tiles}"
 
 
 def _doubt(rung: Rung) -> str:
+    tiles = rung.scale.tiles
     if rung.votes.any():
-        worst = int(np.argmax(np.abs(rung.votes) * (np.abs(rung.bias) - rung.half_width)))
-        return f"unconfirmed: {rung.scale.place(worst)} is off by {_interval(rung, worst)} at one step"
-    if rung.unlit.any():
-        return f"no sample has reached the light in {np.count_nonzero(rung.unlit[:rung.scale.tiles])} of {rung.scale.tiles} tiles"
-    worst = int(np.argmax(rung.reach[:rung.scale.tiles + 1]))
-    return f"{rung.scale.place(worst)} is off by {_interval(rung, worst)}, tolerance {rung.tolerance:g}"
+        return f"unconfirmed: {_accusation(rung, rung.votes)} at one step"
+    if rung.unlit[:tiles].any():
+        return f"no sample has reached the light in {np.count_nonzero(rung.unlit[:tiles])} of {tiles} tiles"
+    worst = int(np.argmax(rung.reach[:tiles + 1]))
+    if rung.uncertainty[worst] >= rung.tolerance:
+        blur = f"±{100 * rung.uncertainty[worst]:.2g} %"
+        return f"no number of samples decides: the output's steps leave {blur}, tolerance {100 * rung.tolerance:g} %"
+    return f"{rung.scale.place(worst)} is off by {_interval(rung, worst)}, tolerance {100 * rung.tolerance:g} %"
 
 
 def _interval(rung: Rung, index: int) -> str:
