@@ -158,6 +158,9 @@ def test_a_resumed_run_keeps_its_plan(command, capsys):
     (["report", "/nowhere"], "/nowhere: is no run"),
     (["list", "--suite", "/nowhere"], "/nowhere: is no suite"),
     (["doctor", "mitsba"], "there is no method 'mitsba'"),
+    (["certify"], "there is nothing to certify"),
+    (["certify", "sqare-light"], "there is no scene 'sqare-light'; did you mean square-light"),
+    (["certify", "nowhere.toml"], "nowhere.toml: cannot be read"),
 ])  # fmt: skip
 def test_bad_input_is_explained(capsys, arguments, message):
     """What is wrong, where, and what would be right; exit 2; nothing has run."""
@@ -236,6 +239,29 @@ def test_exit_statuses(outcomes, relaxed, strict):
     """Verdicts do not fail a job that was done; errors do; --strict asks for passes."""
     assert exit_status(outcomes, strict=False, complete=True) == relaxed
     assert exit_status(outcomes, strict=True, complete=True) == strict
+
+
+def test_certify_keeps_and_checks(root, capsys):
+    """A point light: its reference written beside it and found again; one value changed by 1e-9, and the check says so."""
+    stored = root / "references/point-light.csv"
+    assert main(["certify", "point-light", "--suite", str(root)]) == 0
+    assert "point-light:tilted: certify/direct within" in capsys.readouterr().out
+    assert main(["certify", str(root / "scenes/point-light.toml"), "--check"]) == 0
+    head, first, *rest = stored.read_text().splitlines()
+    *place, value, uncertainty = first.split(",")
+    stored.write_text("\n".join([head, ",".join([*place, repr(float(value) * (1 + 1e-9)), uncertainty]), *rest]))
+    assert main(["certify", "--all", "--suite", str(root), "--check"]) == 1
+    assert "point-light: 1 of 192 values differ from those stored" in capsys.readouterr().out
+
+
+def test_certify_says_what_it_cannot(root, capsys):
+    """Solid angles, which the reference engine does not cover: the reason, exit 3, and nothing written."""
+    path = root / "scenes/lamp-seen.toml"
+    scene = (root / "scenes/point-light.toml").read_text().partition("[film]")[0]
+    path.write_text(f'{scene}[film]\nkind = "points"\nquantity = "solid_angle"\npositions = [[0, 0, 0]]\n')
+    assert main(["certify", str(path)]) == 3
+    assert "not certified: lamp-seen: films of solid angle are not covered" in capsys.readouterr().out
+    assert not (root / "references/lamp-seen.csv").exists()
 
 
 def test_the_list_shows_scenes_and_methods(capsys, monkeypatch):

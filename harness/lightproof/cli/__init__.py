@@ -7,12 +7,12 @@ import sys
 from collections.abc import Sequence
 
 from lightproof.checked import SceneError
-from lightproof.cli import doctor, listing, report, run
+from lightproof.cli import certify, doctor, listing, report, run
 from lightproof.cli.status import INCOMPLETE, USAGE, UsageError
 from lightproof.films import FilmError
 from lightproof.store import StoreError
 
-COMMANDS = {"run": run, "report": report, "list": listing, "doctor": doctor}
+COMMANDS = {"run": run, "report": report, "list": listing, "certify": certify, "doctor": doctor}
 
 
 def parser() -> argparse.ArgumentParser:
