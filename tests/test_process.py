@@ -102,7 +102,7 @@ def test_what_is_not_installed_says_how_to_install_it(pool, render):
     ("exits-at-once", "while starting the renderer: its process exited with status 7 before it answered"),
     ("exits-mid-job", "its process exited with status 9 before it answered; it last wrote: the licence has expired"),
     ("calls-exit", "while rendering: its process exited with status 5"),
-    ("segfaults", "while rendering: its process was killed by SIGSEGV; it last wrote: "),
+    ("segfaults", "while rendering: its process was killed by SIGSEGV; it wrote nothing (at the second attempt too)"),
     ("floods", "while rendering: OSError: [Errno 27] File too large"),
     ("speaks-nonsense", "while rendering: it wrote b'100% done' into the harness's pipe, which is no answer"),
     ("closes-pipe", "while rendering: its process closed the harness's pipe"),

@@ -50,7 +50,7 @@ class Worker:
         self._buffer = b""
         requests, self._requests = os.pipe()
         self._answers, answers = os.pipe()
-        command = [sys.executable, "-u", "-X", "faulthandler", "-m", "lightproof.renderers.worker"]
+        command = [sys.executable, "-u", "-m", "lightproof.renderers.worker"]
         numbers = (requests, answers, os.getpid(), file_limit)
         self._process = subprocess.Popen(
             [*command, *map(str, numbers)],
