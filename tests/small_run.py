@@ -91,7 +91,7 @@ def make(folder: Path) -> tuple[Store, Suite]:
     for scene in SCENES:
         _write_reference(folder / "references", scene)
     (folder / "references" / "references.bib").write_text(BIBLIOGRAPHY, encoding="utf-8")
-    run = Run("run-1", "2026-01-02 03:04 UTC", "digest", "a <machine>", 2, 7, {"lightproof": "0.1.0"}, "abc123",
+    run = Run("run-1", "2026-01-02T03:04:05+00:00", "digest", "a <machine>", 2, 7, {"lightproof": "0.1.0"}, "abc123",
               {"budget": 200.0})
     record = store.create(folder / "runs", run, SCENES)
     for result in (result for scene in SCENES for method in METHODS for result in results(method, scene)):

@@ -29,7 +29,7 @@ def written(evaluation, tmp_path_factory) -> dict[str, pd.DataFrame]:
     folder = tmp_path_factory.mktemp("csv")
     read = {}
     for name in ("results", "summary"):
-        tables.write(getattr(tables, name)(evaluation), folder / f"{name}.csv")
+        getattr(tables, name)(evaluation).to_csv(folder / f"{name}.csv", index=False)
         read[name] = pd.read_csv(folder / f"{name}.csv", keep_default_na=False, na_values=[""],
                                  float_precision="round_trip")
     return read
@@ -96,6 +96,13 @@ def test_efficiency_is_one_over_variance_times_seconds(written):
 def test_the_final_verdict(written, method, outcome):
     """Exact and unbiased films pass, one too bright by pi fails, a crash is an error."""
     assert row(written["summary"], "floor", method).outcome == outcome
+
+
+def test_counts_are_whole_numbers(evaluation, tmp_path):
+    """Rows without samples do not turn the others' 64 into 64.0."""
+    tables.summary(evaluation).to_csv(tmp_path / "summary.csv", index=False)
+    samples = pd.read_csv(tmp_path / "summary.csv", dtype=str).samples.dropna()
+    assert set(samples) == {"4096"}
 
 
 def test_foreign_text_is_harmless_on_one_line(written):

@@ -51,6 +51,10 @@ def test_count(value, said):
     assert wording.count(value) == said
 
 
+def test_moment():
+    assert wording.moment("2026-01-02T03:04:05+00:00") == "2 January 2026, 03:04 UTC"
+
+
 def test_printable_spells_out_what_steers_and_keeps_what_is_read():
     """An escape sequence, a direction mark, a lone surrogate and a line break; umlauts, Greek and signs stay."""
     assert wording.printable("\x1b[1m\u202ea\udc80\nb") == "\\x1b[1m\\u202ea\\udc80 b"

@@ -21,8 +21,8 @@ def write(run_folder: Path, suite: Suite) -> Path:
     from lightproof.reporting.pictures import picture
 
     evaluation = evaluate(store.open(run_folder), suite)
-    tables.write(tables.results(evaluation), run_folder / "results.csv")
-    tables.write(tables.summary(evaluation), run_folder / "summary.csv")
+    tables.results(evaluation).to_csv(run_folder / "results.csv", index=False)
+    tables.summary(evaluation).to_csv(run_folder / "summary.csv", index=False)
     bibliography = citations.read(suite.root / "references" / "references.bib")
     html = page.render(evaluation, bibliography, functools.partial(picture, cache_folder=_picture_cache()))
     path = run_folder / "index.html"

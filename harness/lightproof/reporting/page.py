@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping
+from subprocess import SubprocessError
 from typing import Any
 
 import jinja2
@@ -27,7 +28,7 @@ OTHERWISE = {Outcome.UNSUPPORTED: "unsupported", Outcome.ERROR: "ended in an err
 
 
 def render(evaluation: Evaluation, bibliography: Mapping[str, Citation], picture: Callable[[Scene], bytes]) -> str:
-    """The whole page. `picture` gives a scene's set-up as PNG bytes, or raises Unavailable with what to install."""
+    """The whole page. `picture` gives a scene's set-up as PNG bytes; where it raises, the page says why there is none."""
     views = [_view(evaluation, scene, bibliography, picture) for scene in evaluation.scenes]
     counts = Counter(cell.verdict.outcome for cell in evaluation.cells)
     return _environment().get_template("page.html.j2").render(
@@ -47,7 +48,7 @@ def _view(evaluation: Evaluation, scene: Scene, bibliography: Mapping[str, Citat
     cells = [cell for method in evaluation.methods if (cell := evaluation.cell(scene, method))]
     try:
         image, missing = shrunk(picture(scene)), ""
-    except Unavailable as reason:
+    except (Unavailable, RuntimeError, OSError, SubprocessError) as reason:
         image, missing = "", str(reason)
     return SceneView(scene, cells, evaluation.methods, image, missing, bibliography)
 
@@ -61,7 +62,7 @@ def _environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {name: getattr(wording, name) for name in ("number", "percent", "seconds", "count")}
+    environment.filters |= {name: getattr(wording, name) for name in ("number", "percent", "seconds", "count", "moment")}
     environment.filters |= {filter.__name__: filter for filter in (charts.slope, time_to, error_at, bias, worst_tile)}
     environment.globals |= {"icons": ICONS, "samples_per_second": samples_per_second}
     return environment

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -23,6 +22,7 @@ SUMMARY = (
     "scene", "case", "method", "outcome", "samples", "bias", "bias_low", "bias_high", "detectable_bias", "tolerance",
     "seconds_to_1_percent", "seconds_to_0_1_percent", "slope", "efficiency", "message",
 )  # fmt: skip
+COUNTS = ("samples", "replicates", "threads", "seed")
 OF_STEP = (
     "samples", "replicates", "outcome", "bias", "bias_low", "bias_high", "worst_tile_bias", "worst_tile_low", "worst_tile_high",
     "detectable_bias", "rmse", "max_error", "seconds_setup", "seconds_compile", "seconds_render", "peak_memory_mb", "message",
@@ -31,7 +31,13 @@ OF_STEP = (
 
 def results(evaluation: Evaluation) -> pd.DataFrame:
     """One row per scene, case, method and ladder step, and one with empty numbers where there is no step."""
-    return pd.DataFrame([row for cell in evaluation.cells for row in _rows(evaluation, cell)], columns=list(RESULTS))
+    return _table([row for cell in evaluation.cells for row in _rows(evaluation, cell)], RESULTS)
+
+
+def _table(rows: list[dict[str, Any]], columns: tuple[str, ...]) -> pd.DataFrame:
+    harmless = [{name: printable(value) if isinstance(value, str) else value for name, value in row.items()} for row in rows]
+    table = pd.DataFrame(harmless, columns=list(columns))
+    return table.astype({name: "Int64" for name in COUNTS if name in columns})  # whole numbers that may be absent
 
 
 def _rows(evaluation: Evaluation, cell: Cell) -> Iterator[dict[str, Any]]:
@@ -60,7 +66,7 @@ def samples_per_second(cell: Cell, step: Step) -> float | None:
 
 def summary(evaluation: Evaluation) -> pd.DataFrame:
     """One row per scene, case and method: its final verdict, and what its error costs."""
-    return pd.DataFrame([_summary(cell) for cell in evaluation.cells], columns=list(SUMMARY))
+    return _table([_summary(cell) for cell in evaluation.cells], SUMMARY)
 
 
 def _summary(cell: Cell) -> dict[str, Any]:
@@ -80,8 +86,3 @@ def _summary(cell: Cell) -> dict[str, Any]:
 
 def _names(cell: Cell) -> dict[str, str]:
     return {"scene": cell.scene.id, "case": cell.scene.case, "method": cell.method}
-
-
-def write(table: pd.DataFrame, path: Path) -> None:
-    """A table as CSV, its text on one line and without anything that steers a terminal. Raises OSError."""
-    table.map(lambda value: printable(value) if isinstance(value, str) else value).to_csv(path, index=False)
