@@ -15,7 +15,6 @@ from lightproof.trial import Result, Status, Trial
 
 SCENE = suite.default().scene("point-light")
 REPLICATES = 4
-UNDECIDED = Decision(False)
 
 
 @dataclass
@@ -44,9 +43,14 @@ def climb(tmp_path, pool: FakePool, decide: Callable[[Sequence[Result]], Decisio
     return Runner(cells, budget, record, pool, decide, ([] if told is None else told).append).run()
 
 
-def decided_at(samples: int, needed: int | None = None) -> Callable[[Sequence[Result]], Decision]:
-    """A verdict that stands from a step of `samples` on."""
-    return lambda results: Decision(max(result.trial.samples for result in results) >= samples, needed)
+def decided_at(samples: int) -> Callable[[Sequence[Result]], Decision]:
+    """A verdict that stands from a step of `samples` on, and says so before."""
+    return lambda results: Decision(max(result.trial.samples for result in results) >= samples, samples)
+
+
+def undecided(results: Sequence[Result]) -> Decision:
+    """A verdict that the next step may decide, but never does."""
+    return Decision(False, 4 * max(result.trial.samples for result in results))
 
 
 def steps(pool: FakePool) -> list[int]:
@@ -100,17 +104,25 @@ def test_the_cheapest_undecided_step_comes_first(tmp_path):
 
 
 def test_verdicts_come_before_slopes(tmp_path):
-    """a is decided at once, b at 4,096 samples and costs more: b first."""
-    pool = FakePool({"a": 1e-6, "b": 1e-3})
-    climb(tmp_path, pool, lambda results: Decision(results[0].trial.method == "a" or results[-1].trial.samples == 4096))
+    """a is decided at once and b, which costs three times as much, at 256 samples: b's verdict comes before a's second step."""
+    pool = FakePool({"a": 1e-6, "b": 3e-6})
+    climb(tmp_path, pool, lambda results: Decision(results[0].trial.method == "a" or results[-1].trial.samples >= 256, 256))
     order = [(trial.method, trial.samples) for trial in pool.asked if trial.replicate == 0]
-    assert order == [("a", 64), ("b", 64), ("b", 256), ("b", 1024), ("b", 4096), ("a", 256), ("a", 1024)]
+    assert order == [("a", 64), ("b", 64), ("b", 256), ("a", 256), ("a", 1024), ("b", 1024)]
+
+
+def test_a_cheap_slope_does_not_wait_for_a_dear_verdict(tmp_path):
+    """a is decided at once and costs a hundredth of b, which is not: a has its three steps before b's second."""
+    pool = FakePool({"a": 1e-6, "b": 1e-4})
+    climb(tmp_path, pool, lambda results: Decision(results[0].trial.method == "a" or results[-1].trial.samples >= 256, 256))
+    order = [(trial.method, trial.samples) for trial in pool.asked if trial.replicate == 0]
+    assert order == [("a", 64), ("b", 64), ("a", 256), ("a", 1024), ("b", 256), ("b", 1024)]
 
 
 def test_the_budget_of_the_run(tmp_path):
     """Steps cost 1, 4 and 16 s; of 10 s there is none left for the third."""
     pool = FakePool({"a": 1 / 256})
-    cells = climb(tmp_path, pool, lambda results: UNDECIDED, budget=10)
+    cells = climb(tmp_path, pool, undecided, budget=10)
     assert max(steps(pool)) == 256
     assert cells[0].seconds == pytest.approx(5)
 
@@ -118,7 +130,7 @@ def test_the_budget_of_the_run(tmp_path):
 def test_the_budget_of_a_cell(tmp_path):
     """Steps of a cost 1, 4 and 16 s: of 10 s there is none left for the third; b, a thousand times cheaper, gets far."""
     pool = FakePool({"a": 1 / 256, "b": 1 / 256_000})
-    a, b = climb(tmp_path, pool, lambda results: UNDECIDED, cell_budget=10)
+    a, b = climb(tmp_path, pool, undecided, cell_budget=10)
     assert (a.height, b.height) == (2, 7)
     assert a.seconds <= 10 and b.seconds <= 10
 
@@ -126,14 +138,14 @@ def test_the_budget_of_a_cell(tmp_path):
 def test_set_up_counts_once_a_step_and_compiling_never(tmp_path):
     """2 s of set-up, 100 s of compiling and four films of 1 s: steps cost 6 s and 18 s, and of 30 s two are all that fits."""
     pool = FakePool({"a": 1 / 64}, setup=2)
-    (cell,) = climb(tmp_path, pool, lambda results: UNDECIDED, cell_budget=30)
+    (cell,) = climb(tmp_path, pool, undecided, cell_budget=30)
     assert (cell.height, cell.seconds) == (2, 6 + 18)
 
 
 def test_a_first_step_that_is_too_dear_is_not_finished(tmp_path):
     """Films of 64 s with 150 s to spend: two are rendered (one alone may have compiled), then the cell stops."""
     pool = FakePool({"a": 1.0})
-    (cell,) = climb(tmp_path, pool, lambda results: UNDECIDED, cell_budget=150)
+    (cell,) = climb(tmp_path, pool, undecided, cell_budget=150)
     assert (len(cell.results), cell.height) == (2, 0)
 
 
@@ -144,17 +156,24 @@ def test_a_hopeless_verdict_gets_three_steps(tmp_path):
     assert max(steps(pool)) == 1024
 
 
+def test_a_verdict_that_no_samples_decide_gets_three_steps(tmp_path):
+    """A verdict that stays undecided whatever the samples, and says so: three steps for the slope, no more."""
+    pool = FakePool({"a": 1e-9})
+    climb(tmp_path, pool, lambda results: Decision(False, None))
+    assert max(steps(pool)) == 1024
+
+
 def test_a_verdict_within_reach_is_climbed_to(tmp_path):
     """A verdict that needs 20,000 samples and is decided at the next step, 65,536."""
     pool = FakePool({"a": 1e-6})
-    climb(tmp_path, pool, decided_at(65_536, needed=20_000), cell_budget=1.0)
+    climb(tmp_path, pool, decided_at(20_000), cell_budget=1.0)
     assert max(steps(pool)) == 65_536
 
 
 def test_the_ladder_ends(tmp_path):
     """A method that costs nothing and is never decided: the last step stays within 32 bits."""
     pool = FakePool({"a": 0.0}, deterministic=True)
-    climb(tmp_path, pool, lambda results: UNDECIDED)
+    climb(tmp_path, pool, undecided)
     assert max(steps(pool)) == 2**30
 
 
@@ -198,7 +217,7 @@ def test_a_resumed_run_counts_what_was_spent(tmp_path):
     for replicate in range(REPLICATES):
         record.append(Result(trial(64, replicate, "a"), Status.OK, seconds={"render": 1.0}))
     pool = FakePool({"a": 1 / 64})
-    climb(tmp_path, pool, lambda results: UNDECIDED, budget=10, record=record)
+    climb(tmp_path, pool, undecided, budget=10, record=record)
     assert pool.asked == []
 
 

@@ -21,13 +21,15 @@ FIRST_SAMPLES = 64
 FACTOR = 4
 MOST_SAMPLES = 2**30
 STEPS_FOR_A_SLOPE = 3
+SLOPE_CAN_WAIT = 4  # a step that serves only the slope gives way to one for a verdict that costs up to so many times as much
 SHORTEST_TIMEOUT = 30.0
 SLOWER_THAN_EXPECTED = 10
 
 
 @dataclass(frozen=True)
 class Decision:
-    """What the runner may know of a verdict: whether it stands, and if not the samples per element that would decide it."""
+    """What the runner may know of a verdict: whether it stands, and if not the samples per element that would decide it, None
+    where no number is known to."""
 
     decided: bool
     samples_needed: int | None = None
@@ -36,12 +38,14 @@ class Decision:
 @dataclass
 class Cell:
     """One method on one scene: its results so far by step of the ladder (samples per element), and what they decide.
-    `budget` [s] is what set-up and rendering may take; `replicates` is the number of films a step."""
+    `budget` [s] is what set-up and rendering may take; `replicates` is the number of films a step; no step has more than
+    `most_samples` per element."""
 
     scene: Scene
     entry: Entry
     budget: float
     replicates: int
+    most_samples: int = MOST_SAMPLES
     steps: dict[int, list[Result]] = field(default_factory=dict)
     decision: Decision = Decision(False)
 
@@ -87,7 +91,7 @@ class Cell:
     @property
     def wants_more(self) -> bool:
         """Whether another film would say something and its step fits into the cell's own budget."""
-        if self.broken or self.next_samples > MOST_SAMPLES or self.seconds + self.next_seconds > self.budget:
+        if self.broken or self.next_samples > self.most_samples or self.seconds + self.next_seconds > self.budget:
             return False
         return self.height < STEPS_FOR_A_SLOPE or not (self.decision.decided or self._hopeless)
 
@@ -114,8 +118,10 @@ class Cell:
 
     @property
     def _hopeless(self) -> bool:
+        if self.decision.samples_needed is None:
+            return True
         step, cost, total = self.next_samples, self.next_seconds, self.seconds
-        while step < (self.decision.samples_needed or 0):
+        while step < self.decision.samples_needed:
             total += cost
             step, cost = step * FACTOR, cost * FACTOR
         return total + cost > self.budget
@@ -141,7 +147,7 @@ class Progress:
 
 
 class Runner:
-    """Runs cells, the cheapest undecided step first, and records each result as it comes.
+    """Runs cells, the cheapest step first, those for a verdict before those for a slope, and records each result as it comes.
 
     `budget` [s] is that of all cells together, `decide` gets all results of one cell, `tell` hears of the progress. Raises
     StoreError where the record cannot be written.
@@ -155,7 +161,7 @@ class Runner:
         self._pool = pool
         self._decide = decide
         self._tell = tell
-        self._queue: list[tuple[bool, float, int, Cell]] = []
+        self._queue: list[tuple[float, int, Cell]] = []
 
     def run(self) -> list[Cell]:
         """All cells with their results, once the budget is spent or nothing is left that is worth its time. What the store
@@ -165,8 +171,8 @@ class Runner:
         for cell in self._cells.values():
             self._judge(cell)
         while self._queue:
-            _, cost, _, cell = heapq.heappop(self._queue)
-            if self._seconds + cost <= self._budget:
+            *_, cell = heapq.heappop(self._queue)
+            if self._seconds + cell.next_seconds <= self._budget:
                 self._report(cell)
                 self._climb(cell)
                 self._judge(cell)
@@ -189,7 +195,8 @@ class Runner:
             cell.decision = self._decide(cell.results)
         if cell.wants_more:
             order = list(self._cells.values()).index(cell)
-            heapq.heappush(self._queue, (cell.decision.decided, cell.next_seconds, order, cell))
+            urgency = cell.next_seconds * (SLOPE_CAN_WAIT if cell.decision.decided else 1)
+            heapq.heappush(self._queue, (urgency, order, cell))
 
     @property
     def _seconds(self) -> float:
