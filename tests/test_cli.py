@@ -51,9 +51,11 @@ def command(root, tmp_path, capsys):
 
     def command(*arguments: str, methods=(HONEST,)):
         out = tmp_path / "runs"
+        before = set(out.glob("*"))
         status = main(["run", *arguments, "--suite", str(root), "--out", str(out), "--threads", "1", "--with", *methods])
         printed = capsys.readouterr()
-        return status, printed.out, printed.err, store.latest(out) if list(out.glob("*/run.json")) else None
+        new = set(out.glob("*")) - before
+        return status, printed.out, printed.err, store.open(new.pop()) if new else None
 
     return command
 
@@ -69,7 +71,7 @@ def test_an_honest_renderer_passes(command):
 
 
 def test_faults_leave_the_rest_of_a_run_unharmed(command):
-    """An honest renderer among five that fail: its verdict and films stand, each failure is named, exit 3."""
+    """An honest renderer among five that fail: each failure is named, exit 3, and its films are those of a run of its own."""
     faults = ("raises", "segfaults", "exits-at-once", "negative", "not-installed")
     status, out, _, record = command(methods=[HONEST, *(f"{HONEST}/{fault}" for fault in faults)])
     assert status == 3
@@ -77,6 +79,8 @@ def test_faults_leave_the_rest_of_a_run_unharmed(command):
     for fault in faults:
         assert f"misbehaving:Misbehaving/{fault}" in out
     assert "pip install 'lightproof[misbehaving]'" in out
+    alone = films_of(command()[-1].folder)
+    assert {key: film for key, film in films_of(record.folder).items() if key in alone} == alone
     counts = [sum(result.trial.method == f"misbehaving:Misbehaving/{fault}" for result in record.results()) for fault in faults]
     assert counts == [1] * 5
 
@@ -113,8 +117,8 @@ def interrupted(root: Path, out: Path, number: signal.Signals) -> tuple[int, str
 
 
 def films_of(folder: Path) -> dict[str, bytes]:
-    """Every recorded trial's film, by the trial's key."""
-    results = store.open(folder).results()
+    """Every recorded film, by the trial's key."""
+    results = [result for result in store.open(folder).results() if result.film is not None]
     films = {result.trial.key: result.film.tobytes() for result in results}
     assert len(films) == len(results)
     return films

@@ -111,12 +111,15 @@ class Pool:
             prepared = self._prepare(entry, scene)
             film.parent.mkdir(parents=True, exist_ok=True)
             answer = self._ask(entry, "render", timeout, samples=trial.samples, seed=trial.seed, film=str(film))
-            channels = read_film(film, scene)
+            return self._filled(trial, about, prepared, answer, read_film(film, scene))
         except (Unavailable, Unsupported) as reason:
             return Result(trial, Status.UNSUPPORTED, threads=self.threads, message=str(reason))
-        except (MethodFailed, FilmError) as error:
+        except (MethodFailed, FilmError, OSError) as error:
             self._prepared.pop(entry.name, None)
             return self._failed(trial, str(error))
+
+    def _filled(self, trial: Trial, about: About, prepared: Preparation, answer: Mapping[str, Any],
+                channels: Mapping[str, np.ndarray]) -> Result:
         return Result(
             trial=trial,
             status=Status.OK,
