@@ -151,6 +151,14 @@ def test_errors_in_standard_errors_need_noise(evaluation):
     assert np.std(cells["mc-area"].z_score) == pytest.approx(1, abs=0.3)
 
 
+def test_the_standard_error_is_that_of_the_mean(evaluation):
+    """Two films, 1 and 3 everywhere: mean 2, standard deviation sqrt(2), standard error 1."""
+    cell = next(cell for cell in evaluation.cells if (cell.scene.id, cell.method) == ("spots", "mc-area"))
+    two = tuple(replace(result, film=np.full(2, value)) for result, value in zip(cell.results[:2], (1.0, 3.0), strict=True))
+    assert replace(cell, results=two).film == pytest.approx([2.0, 2.0])
+    assert replace(cell, results=two).standard_error == pytest.approx([1.0, 1.0])
+
+
 def test_a_certain_value_that_is_off_is_infinitely_many_standard_errors_off(evaluation):
     """Two elements: one right and one wrong without noise, in a film whose replicates differ elsewhere."""
     cell = next(cell for cell in evaluation.cells if (cell.scene.id, cell.method) == ("spots", "mc-area"))
@@ -188,6 +196,13 @@ def test_a_run_cut_short_has_a_page(run, trials, said):
     html = page.render(interrupted(*run, trials), {}, picture)
     assert said in html
     assert [f"The {scene.id} " in html for scene in small_run.SCENES] == [True, True, True]
+
+
+def test_an_unfinished_step_does_not_speak_for_the_method(run):
+    """mc-area killed in its second step, after three of sixteen films: the first step's film and bias are shown."""
+    cell = interrupted(*run, 4 + 16 + 3).cells[1]
+    assert (len(cell.final), cell.step.samples, cell.step.replicates) == (16, 64, 16)
+    assert len(cell.verdict.steps) == 2
 
 
 def test_write_leaves_three_files_in_the_run(run, monkeypatch):

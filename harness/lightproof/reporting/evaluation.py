@@ -38,6 +38,11 @@ class Cell:
                 steps.setdefault(result.trial.samples, []).append(result)
         return max(steps.items(), key=lambda step: (len(step[1]), step[0]))[1] if steps else []
 
+    @property
+    def step(self) -> Step | None:
+        """What was found at the last complete step; None where nothing could be judged."""
+        return next((step for step in self.verdict.steps if self.final and step.samples == self.final[0].trial.samples), None)
+
     @cached_property
     def film(self) -> np.ndarray:
         """Mean over the last step's replicates (n,) in the film's unit."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping
+from functools import cache
 from subprocess import SubprocessError
 from typing import Any
 
@@ -39,8 +40,14 @@ def render(evaluation: Evaluation, bibliography: Mapping[str, Citation], picture
         answer=answer(counts),
         findings=findings(evaluation),
         cost=charts.time_to_one_percent(evaluation.cells, evaluation.methods),
-        bundle=Markup(vl_convert.javascript_bundle()),
+        bundle=_bundle(),
     )
+
+
+@cache
+def _bundle() -> Markup:
+    """Vega, Vega-Lite and their embedding, for the page's one script."""
+    return Markup(vl_convert.javascript_bundle())
 
 
 def _view(evaluation: Evaluation, scene: Scene, bibliography: Mapping[str, Citation],

@@ -82,7 +82,7 @@ class SceneView:
     @property
     def measured(self) -> list[Cell]:
         """The cells that have films judged by the reference."""
-        return [cell for cell in self.cells if cell.verdict.steps]
+        return [cell for cell in self.cells if cell.step]
 
     @property
     def unmeasured(self) -> list[Cell]:

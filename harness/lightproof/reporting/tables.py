@@ -70,7 +70,7 @@ def summary(evaluation: Evaluation) -> pd.DataFrame:
 
 
 def _summary(cell: Cell) -> dict[str, Any]:
-    final = {name: getattr(cell.verdict.steps[-1], name) for name in SUMMARY if name in OF_STEP} if cell.verdict.steps else {}
+    final = {name: getattr(cell.step, name) for name in SUMMARY if name in OF_STEP} if cell.step else {}
     return {
         **final,
         **_names(cell),
