@@ -1,5 +1,6 @@
 # `make report`: set up, run the default suite, write the page. `make test`: set up, run the tests.
-# Python 3.11 or 3.13; choose one with PYTHON=..., which renderers to install with EXTRAS=... (mitsuba, cycles, pyrender, all).
+# Python 3.11 or 3.13; choose one with PYTHON=..., which renderers to install with EXTRAS=... (mitsuba, cycles, pyrender, all),
+# what to run instead of the default suite with RUN='square-light --with mc-area'.
 
 PYTHON ?= $(shell for p in python3 python3.13 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info[:2] not in ((3, 11), (3, 13)))' 2>/dev/null && { echo $$p; break; }; done)
@@ -11,7 +12,7 @@ READY := $(VENV)/ready-$(EXTRAS)
 .PHONY: setup report nightly test gate bench clean
 
 report: setup
-	$(BIN)/lightproof run
+	$(BIN)/lightproof run $(RUN)
 	$(BIN)/lightproof report
 
 nightly: setup

@@ -18,9 +18,10 @@ LAYERS = [
     {"suite", "certify", "estimators"},
     {"renderers"},
     {"store", "diagnose", "ladder"},
-    {"verdict"},
-    {"runner"},
-    {"reporting"},
+    {"verdict", "runner"},
+    {"judging", "machine"},
+    {"plan"},
+    {"baseline", "reporting"},
     {"gate", "api"},
     {"cli", "pytest_plugin"},
 ]

@@ -6,13 +6,14 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from lightproof.baseline import BaselineError
 from lightproof.checked import SceneError
-from lightproof.cli import certify, doctor, listing, report, run
+from lightproof.cli import certify, doctor, gate, listing, report, run
 from lightproof.cli.status import INCOMPLETE, USAGE, UsageError
 from lightproof.films import FilmError
 from lightproof.store import StoreError
 
-COMMANDS = {"run": run, "report": report, "list": listing, "certify": certify, "doctor": doctor}
+COMMANDS = {"run": run, "report": report, "list": listing, "certify": certify, "doctor": doctor, "gate": gate}
 
 
 def parser() -> argparse.ArgumentParser:
@@ -29,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     try:
         return COMMANDS[options.command].run(options)
-    except (UsageError, SceneError, StoreError, FilmError) as error:
+    except (UsageError, SceneError, StoreError, FilmError, BaselineError) as error:
         print(f"lightproof {options.command}: {error}", file=sys.stderr)
         return USAGE
     except KeyboardInterrupt:

@@ -8,8 +8,8 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 
-from lightproof import suite
-from lightproof.cli import machine, selection
+from lightproof import machine, suite
+from lightproof.cli import selection
 from lightproof.cli.status import DONE, INCOMPLETE
 from lightproof.reference import ReferenceError
 from lightproof.renderers.doctor import SAMPLES, Examination, examine

@@ -6,9 +6,9 @@ import argparse
 from pathlib import Path
 
 from lightproof import store
-from lightproof.cli.judging import homes
 from lightproof.cli.run import RUNS
 from lightproof.cli.status import DONE
+from lightproof.judging import homes
 from lightproof.suite import Suite
 
 

@@ -3,30 +3,25 @@
 from __future__ import annotations
 
 import argparse
-import hashlib
 import math
-import secrets
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict
-from datetime import UTC, datetime
 from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
 
-from lightproof import store, suite
-from lightproof.cli import machine, selection
-from lightproof.cli.judging import Judge
+from lightproof import machine, plan, store, suite
+from lightproof.cli import selection
 from lightproof.cli.progress import Display
 from lightproof.cli.status import DONE, FAILED, INCOMPLETE, UsageError
+from lightproof.judging import Judge
 from lightproof.method import Unavailable
 from lightproof.renderers.pool import MethodFailed, Pool
 from lightproof.renderers.process import WorkerDied
 from lightproof.renderers.registry import Entry
-from lightproof.runner import Cell, Runner
-from lightproof.scene import Scene
-from lightproof.store import Run, Store
+from lightproof.runner import Runner
+from lightproof.store import Store
 from lightproof.suite import Suite
 from lightproof.verdict import Outcome, Verdict
 
@@ -87,8 +82,9 @@ def run(options: argparse.Namespace) -> int:
     methods = selection.methods(options.methods, options.tags)
     store.check_writable(options.out)
     with Pool(options.threads) as pool:
-        versions = machine.versions() | _open(methods, pool, console)
-        record = store.create(options.out, _describe(options, scenes, methods, versions), list(scenes))
+        header = plan.describe(scenes, methods, options.threads, options.seed, _open(methods, pool, console),
+                               **{name: getattr(options, name) for name in ("budget", "cell_budget", "replicates", "tags")})
+        record = store.create(options.out, header, list(scenes))
         return _carry_out(record, pool, console, options.strict)
 
 
@@ -119,43 +115,19 @@ def _open(methods: Iterable[Entry], pool: Pool, console: Console) -> dict[str, s
     return versions
 
 
-def _describe(options: argparse.Namespace, scenes: dict[Scene, Suite], methods: Iterable[Entry], versions: dict[str, str]) -> Run:
-    now = datetime.now(UTC)
-    digests = "".join(sorted(scene.digest for scene in scenes))
-    return Run(
-        id=f"{now:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}",
-        started=now.isoformat(timespec="seconds"),
-        suite_digest=hashlib.sha256(digests.encode()).hexdigest(),
-        machine=machine.description(),
-        threads=options.threads,
-        seed=options.seed,
-        versions=versions,
-        commit=machine.commit(),
-        options={
-            "budget": options.budget,
-            "cell_budget": options.cell_budget,
-            "replicates": options.replicates,
-            "tags": options.tags,
-            "methods": [asdict(entry) for entry in methods],
-            "suites": {scene.name: str(home.root.resolve()) for scene, home in scenes.items()},
-        },
-    )
-
-
 def _carry_out(record: Store, pool: Pool, console: Console, strict: bool) -> int:
-    plan, judge = record.run.options, Judge(record)
-    entries = [Entry(**entry) for entry in plan["methods"]]
-    cells = [Cell(scene, entry, plan["cell_budget"], plan["replicates"]) for scene in record.scenes for entry in entries]
+    cells, judge = plan.cells(record), Judge(record)
     try:
         with Display(console) as display:
-            Runner(cells, plan["budget"], record, pool, judge.decide, display.show).run()
+            Runner(cells, record.run.options["budget"], record, pool, judge.decide, display.show).run()
     except KeyboardInterrupt:
         console.print(f"interrupted; carry on with: lightproof run --resume {escape(str(record.folder))}")
         return INCOMPLETE
     verdicts = {cell.name: judge.judge(cell.results) for cell in cells if cell.results}
     _sum_up(verdicts, console)
     console.print(f"recorded in {escape(str(record.folder))}")
-    return exit_status([verdict.outcome for verdict in verdicts.values()], strict, complete=len(verdicts) == len(cells))
+    complete = all(cell.results and cell.entry.name in record.run.versions for cell in cells)
+    return exit_status([verdict.outcome for verdict in verdicts.values()], strict, complete)
 
 
 def _sum_up(verdicts: dict[str, Verdict], console: Console) -> None:
@@ -170,8 +142,8 @@ def _sum_up(verdicts: dict[str, Verdict], console: Console) -> None:
 
 
 def exit_status(outcomes: Sequence[Outcome], strict: bool, complete: bool) -> int:
-    """0 where the job is done, 3 where something broke; strictly 1 where something fails, 3 where anything else is not passed.
-    What a method cannot do counts neither way."""
+    """0 where the job is done, 3 where something broke; strictly 1 where something fails, 3 where anything else is not passed or
+    the run is not `complete`: a method did not start, or a cell has no result. What a method cannot do counts neither way."""
     if strict and Outcome.FAIL in outcomes:
         return FAILED
     unwanted = {Outcome.ERROR, Outcome.UNDECIDED, Outcome.NO_REFERENCE} if strict else {Outcome.ERROR}

@@ -44,10 +44,17 @@ class Judge:
         self._suite = homes(store)
         self._reference = cache(self._read_reference)
 
+    def scene(self, results: Sequence[Result]) -> Scene:
+        """The scene that results are of."""
+        return self._scenes[results[0].trial.scene, results[0].trial.case]
+
+    def reference(self, results: Sequence[Result]) -> Reference | None:
+        """The exact light that results are judged by, where there is one."""
+        return self._reference(self.scene(results))
+
     def judge(self, results: Sequence[Result]) -> Verdict:
         """The verdict of one method on one scene from all its results."""
-        scene = self._scenes[results[0].trial.scene, results[0].trial.case]
-        return verdict.judge(results, self._reference(scene), scene)
+        return verdict.judge(results, self.reference(results), self.scene(results))
 
     def decide(self, results: Sequence[Result]) -> Decision:
         """What the runner may know of it."""

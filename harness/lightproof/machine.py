@@ -31,7 +31,7 @@ def versions() -> dict[str, str]:
 
 def commit() -> str:
     """The checkout's commit, with a + where files differ from it; empty for an installed copy."""
-    folder = Path(__file__).resolve().parents[3]
+    folder = Path(__file__).resolve().parents[2]
     try:
         git = ["git", "-C", str(folder), "describe", "--always", "--abbrev=12", "--dirty=+", "--exclude=*"]
         return subprocess.run(git, capture_output=True, text=True, check=True, timeout=10).stdout.strip()
