@@ -66,6 +66,28 @@ def test_noise_gets_no_name():
     assert all(named(value, value, scene, seed=seed) is None for seed in range(40))
 
 
+def test_a_factor_known_too_coarsely_is_not_named():
+    """pi times the light at five points, each known to 5 %: the factor is known to 9 %, and 3 would do as well."""
+    scene = SUITE.scene("disk-light:axis")
+    value = np.full(scene.size, 4.3)
+    assert all(named(np.pi * value, value, scene, noise=0.05, seed=seed) is None for seed in range(40))
+
+
+def test_a_mistake_that_noise_would_hide_is_not_named():
+    """A cosine missing under a lamp parallel to the floor, 13 % of the light, each element known to 3 %."""
+    scene = SUITE.scene("square-light")
+    film = light(scene, diagnose.SHARES["the light's cosine is missing"])
+    assert all(named(film, light(scene), scene, noise=0.03, seed=seed) is None for seed in range(40))
+
+
+def test_three_mistakes_that_explain_a_film_name_none():
+    """Light that doubles from row to row and from column to column: half of it is also the light shifted by one of either."""
+    scene = SUITE.scene("white-furnace-plane")
+    row, column = np.indices(scene.film.grid).reshape(2, -1)
+    value = 2.0 ** (row + column)
+    assert diagnose.diagnose(value / 2, np.zeros(scene.size), value, scene) is None
+
+
 def test_a_film_that_no_mistake_explains_gets_no_name():
     """Square light with a tilt across the film: 30 % too bright on one side, right on the other."""
     scene = SUITE.scene("square-light")

@@ -18,6 +18,7 @@ LAYERS = [
     {"suite", "certify", "estimators"},
     {"renderers"},
     {"store", "diagnose", "ladder"},
+    {"finding"},
     {"verdict", "runner"},
     {"judging", "machine"},
     {"plan"},

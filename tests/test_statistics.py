@@ -33,8 +33,8 @@ def test_standard_error():
 
 
 def test_standard_error_of_equal_values_is_exactly_zero():
-    """Sixteen times 0.1, whose mean is not 0.1 in binary."""
-    assert (statistics.standard_error(np.full((13, 3), 0.1)) == 0).all()
+    """Sixteen times 0.1: over several columns numpy rounds their mean to another number."""
+    assert (statistics.standard_error(np.full((16, 3), 0.1)) == 0).all()
 
 
 def test_standard_error_of_one_value_is_unknown():

@@ -242,6 +242,7 @@ def test_a_deterministic_error_that_shrinks_is_undecided():
     """3 % off, then 2 %: it falls to 0.67 of itself."""
     found = judged({64: [LIGHT + 0.12 * TILE], 256: [LIGHT + 0.08 * TILE]}, deterministic=True)
     assert outcomes(found) == ["undecided", "undecided"]
+    assert found.reason.startswith("still converging: the tile of rows 6-7, columns 10-11 is off by +2")
     assert found.samples_needed == 1024
 
 
@@ -316,6 +317,13 @@ def test_an_incomplete_step_is_listed_but_not_judged():
     assert judged({64: noisy(LIGHT, QUIET), 256: noisy(biased, QUIET, replicates=1)}).outcome is Outcome.PASS
 
 
+def test_an_incomplete_step_does_not_confirm():
+    """Ten films at 64 samples, 16 at 256, all 3 % too bright."""
+    biased = LIGHT + 0.12
+    found = judged({64: noisy(biased, QUIET, replicates=10), 256: noisy(biased, QUIET, seed=2)})
+    assert outcomes(found) == ["undecided", "undecided"]
+
+
 def test_a_single_noisy_film_is_not_judged():
     """One film has no spread."""
     found = judged({64: noisy(LIGHT, QUIET, replicates=1)})
@@ -325,9 +333,9 @@ def test_a_single_noisy_film_is_not_judged():
 
 
 def test_order_and_repetition_of_results_change_nothing():
-    """Results in any order, some recorded twice, one after an error: the same verdict."""
+    """Results in any order, some recorded twice, one with an error beside its film: the same verdict."""
     films = results({64: noisy(LIGHT + 0.12, QUIET), 256: noisy(LIGHT + 0.12, QUIET, seed=2)})
-    shuffled = [*films[::-1], error(64, "crashed", replicate=3), *films[:20]]
+    shuffled = [*films[::-1], *films[:20], error(64, "crashed", replicate=3)]
     assert verdict.judge(shuffled, reference(), SCENE) == verdict.judge(films, reference(), SCENE)
 
 
