@@ -114,7 +114,8 @@ class Cell:
 
     @property
     def _films(self) -> int:
-        return 1 if any(result.deterministic for result in self.results) else self.replicates
+        first = next((step[0] for step in self.steps.values()), None)
+        return 1 if first and first.deterministic else self.replicates
 
     @property
     def _hopeless(self) -> bool:
@@ -162,6 +163,7 @@ class Runner:
         self._decide = decide
         self._tell = tell
         self._queue: list[tuple[float, int, Cell]] = []
+        self._spent: dict[str, float] = {}
 
     def run(self) -> list[Cell]:
         """All cells with their results, once the budget is spent or nothing is left that is worth its time. What the store
@@ -188,19 +190,20 @@ class Runner:
             result = self._pool.render(cell.entry, cell.scene, trial, film, cell.timeout)
             self._store.append(result)
             cell.add(result)
+        self._store.sync()
 
     def _judge(self, cell: Cell) -> None:
         """Learn what a cell's results decide, and queue its next step if it wants one."""
+        self._spent[cell.name] = cell.seconds
         if cell.steps:
             cell.decision = self._decide(cell.results)
         if cell.wants_more:
-            order = list(self._cells.values()).index(cell)
             urgency = cell.next_seconds * (SLOPE_CAN_WAIT if cell.decision.decided else 1)
-            heapq.heappush(self._queue, (urgency, order, cell))
+            heapq.heappush(self._queue, (urgency, list(self._spent).index(cell.name), cell))
 
     @property
     def _seconds(self) -> float:
-        return sum(cell.seconds for cell in self._cells.values())
+        return sum(self._spent.values())
 
     def _report(self, cell: Cell | None) -> None:
         waiting = len(self._queue) + (cell is not None)

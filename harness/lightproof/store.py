@@ -77,16 +77,20 @@ class Store:
         return lines
 
     def append(self, result: Result) -> None:
-        """Record one result for good: on the disk when this returns. Raises StoreError."""
+        """Record one result: safe from a kill of the harness when this returns, and from a power cut after `sync`. Raises
+        StoreError."""
         record = {field.name: getattr(result, field.name) for field in fields(Result) if field.name not in ABSENT}
         film = self.film_path(result.trial).relative_to(self.folder) if result.film is not None else None
         record |= {"trial": asdict(result.trial), "film": film and str(film)}
         try:
             self._lines.write(json.dumps(record, default=dict).encode() + b"\n")
             self._lines.flush()
-            os.fsync(self._lines.fileno())
         except OSError as error:
             raise StoreError(f"{self._trials}: cannot be written ({error.strerror}); mend that, then --resume the run") from None
+
+    def sync(self) -> None:
+        """Have what was recorded written to the disk: some milliseconds, so once for several results."""
+        os.fsync(self._lines.fileno())
 
     def results(self) -> list[Result]:
         """Every recorded result with its film, in the order in which they ended. Raises StoreError, FilmError."""
