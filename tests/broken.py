@@ -6,9 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from lightproof.estimators.lamps import lamps
 from lightproof.estimators.mc_area import McArea
+from lightproof.estimators.shapes import Flat, Parallelogram
 from lightproof.method import Rendering
 from lightproof.scene import Scene
+
+WHAT = "this mistake is made under parallelograms only"
 
 
 class PiForgotten(McArea):
@@ -30,15 +34,17 @@ class CosineForgotten(McArea):
     """The receiver's cosine is left out: every estimate is divided by it, so that light from the side counts in full."""
 
     def unsupported(self, scene: Scene) -> str | None:
-        return super().unsupported(scene) or ("this mistake is made for open planes only" if scene.surfaces else None)
+        refused = super().unsupported(scene) or (scene.surfaces and "this mistake is made without blockers only")
+        shapes = [getattr(lamp, "shape", None) for _, lamp in lamps(scene, reach=1.0)] if not refused else []
+        return refused or next((WHAT for shape in shapes if not isinstance(shape, Parallelogram)), None)
 
     def render(self, samples: int, seed: int) -> Rendering:
         rng = np.random.default_rng(seed)
         (piece,) = self.pieces
-        film, variance = np.transpose([self.element(row, *piece.lamp, samples, rng) for row in self.receivers])
-        return Rendering(film, samples, variance)
+        film, variance = np.transpose([self.element(row, *piece.lamp, max(2, samples), rng) for row in self.receivers])
+        return Rendering(film, max(2, samples), variance)
 
-    def element(self, row: np.ndarray, shape: tuple, strength: float, samples: int, rng: np.random.Generator) -> tuple[float, float]:
+    def element(self, row: np.ndarray, shape: Flat, strength: float, samples: int, rng: np.random.Generator) -> tuple:
         """Mean and variance for one element under a parallelogram."""
         s, t, p, q = rng.random((4, samples, 1)) - 0.5
         x = row[:3] + (row[12] * p + row[13] * q) * row[3:6] + row[14] * q * row[6:9]

@@ -26,7 +26,7 @@ def direct_unsupported(scene: Scene) -> str | None:
 
 
 def emitting_pieces(item: scenes.Light | scenes.Surface) -> list[Flat | Sphere | None]:
-    """The pieces of what shines, None for a sky; nothing for what is black, nor for points and beams (their shadows are traced)."""
+    """The pieces of what shines, None for a sky; nothing for what is black, nor for points and beams, which are traced."""
     if isinstance(item, scenes.AreaLight | scenes.Surface):
         return parts(item.shape) if item.radiance else []
     return [] if isinstance(item, scenes.PointLight | scenes.DirectionalLight) else [None]

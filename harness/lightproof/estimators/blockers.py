@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import types
 from numba.extending import overload
 
 from lightproof import geometry
@@ -70,10 +71,9 @@ def _hidden(blocker, x, d):
 def crossing(blocker, x, d):
     """Where the segment's line meets the blocker's plane, without a division: whether within the segment, and parameters
     s, t of the point, both times `scale` >= 0."""
-    o = sub(x, blocker.center)
-    above, slope = dot(o, blocker.normal), dot(d, blocker.normal)
-    s = dot(o, blocker.dual_u) * slope - above * dot(d, blocker.dual_u)
-    t = dot(o, blocker.dual_v) * slope - above * dot(d, blocker.dual_v)
+    above, slope = dot(x, blocker.normal) - dot(blocker.center, blocker.normal), dot(d, blocker.normal)
+    s = (dot(x, blocker.dual_u) - dot(blocker.center, blocker.dual_u)) * slope - above * dot(d, blocker.dual_u)
+    t = (dot(x, blocker.dual_v) - dot(blocker.center, blocker.dual_v)) * slope - above * dot(d, blocker.dual_v)
     return above * (above + slope) < like(slope, 0), s, t, slope
 
 
@@ -109,6 +109,8 @@ def all_placed(blockers, origin, frame, model):
 
 @overload(all_placed)
 def _all_placed(blockers, origin, frame, model):
+    if not isinstance(blockers, types.BaseTuple):
+        return None
     if len(blockers) == 0:
         return lambda blockers, origin, frame, model: ()
     return lambda blockers, origin, frame, model: (

@@ -1,7 +1,7 @@
 """Lights as the fast kernel samples them: one point of the light per draw, with density per area.
 
-`arriving(lamp, x, s, t)` gives the estimate of irradiance [W/m2] at `x`, whose normal is the third axis, from two draws
-s, t (in units of TICK), and the vector from `x` to the light's point:
+`arriving(lamp, x, s, t)` gives the estimate of irradiance at `x`, whose normal is the third axis, per strength of the
+lamp, from two draws s, t (in units of TICK), and the vector from `x` to the light's point:
 L cos(theta_x) cos(theta_y) / (r^2 p), with cosines written as dot products with the unnormalised d = y - x.
 """
 
@@ -92,7 +92,7 @@ FACED = {Lamp: _faced_lamp, Point: _faced_point, Beam: _faced_beam}
 
 
 def arriving(lamp, x, s, t):
-    """Estimate of irradiance [W/m2] at `x` without blockers, and the vector to the light's point; see the module."""
+    """Estimate of irradiance per strength at `x` without blockers, and the vector to the light's point; see the module."""
 
 
 @overload(arriving)
@@ -107,7 +107,8 @@ def _arriving_flat(lamp, x, s, t):
     d = sub(along(along(lamp.shape.center, a, lamp.shape.u), b, lamp.shape.v), x)
     r2 = dot(d, d)
     zero = like(r2, 0)
-    return lamp.strength * max(d[2], zero) * max(-dot(d, lamp.shape.normal), zero) / (r2 * r2), d
+    before = dot(x, lamp.shape.normal) - dot(lamp.shape.center, lamp.shape.normal)
+    return max(d[2], zero) * max(before, zero) / (r2 * r2), d
 
 
 def _arriving_sphere(lamp, x, s, t):
@@ -125,17 +126,17 @@ def _arriving_sphere(lamp, x, s, t):
     d = sub(along(lamp.shape.center, lamp.shape.radius, n), x)
     r2 = dot(d, d)
     cap = like(s, 2 * np.pi) * lamp.shape.radius * lamp.shape.radius * height
-    return lamp.strength * cap * max(d[2], zero) * max(-dot(d, n), zero) / (r2 * r2), d
+    return cap * max(d[2], zero) * max(-dot(d, n), zero) / (r2 * r2), d
 
 
 def _arriving_point(lamp, x, s, t):
     d = sub(lamp.position, x)
     r2 = dot(d, d)
-    return lamp.strength * max(d[2], like(r2, 0)) / (r2 * math.sqrt(r2)), d
+    return max(d[2], like(r2, 0)) / (r2 * math.sqrt(r2)), d
 
 
 def _arriving_beam(lamp, x, s, t):
-    return lamp.strength * max(lamp.back[2], like(s, 0)) / math.sqrt(dot(lamp.back, lamp.back)), lamp.back
+    return max(lamp.back[2], like(s, 0)) / math.sqrt(dot(lamp.back, lamp.back)), lamp.back
 
 
 def parameters(shape, s, t):

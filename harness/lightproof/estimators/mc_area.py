@@ -11,47 +11,83 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numba import types
+from numba.extending import overload
 
-from lightproof.estimators import elements, path, world
+from lightproof.estimators import crowd, elements, path, world
 from lightproof.estimators.blockers import all_placed, between, visible
 from lightproof.estimators.compiled import fast, fast_kernel
+from lightproof.estimators.crowd import shadow_all
 from lightproof.estimators.estimator import Estimator, sampled, spread, variance_of_mean
 from lightproof.estimators.lamps import Beam, Lamp, Point, arriving, faced, lamps
 from lightproof.estimators.limits import no_cylinders, no_glowing_inside, no_reflections, no_skies, no_solid_angle
-from lightproof.estimators.rng import A1, A2, A3, TICK, halves, hash32, mix64, stream, ticks
+from lightproof.estimators.rng import TICK, block_keys, draws, stream
 from lightproof.estimators.shapes import Flat, Sphere
 from lightproof.estimators.vectors import like
 from lightproof.method import Rendering
 from lightproof.scene import CameraFilm, Scene
 
 BLOCK = 2048  # samples between two draws of the lattice's shift, summed in the kernel's precision; blocks add in float64
-ONE = np.uint32(1)
+ZERO = np.uint32(0)
+FEW = 3  # blockers that are worth a kernel of their own
 REACH = 100.0  # sizes of the scene: the length of a shadow ray along a beam
 
 
 @fast
-def sum_block(lamp, blockers, cell, key, count, pivot):
-    """Sum of (f - pivot) and of its square over `count` samples."""
-    start, shift_t = halves(key)
-    shift_p, shift_q = halves(mix64(key))
+def on_cell(cell, p, q):
+    """A point of the element in its own frame."""
+    return p * cell[0] + q * cell[1], q * cell[2], like(p, 0)
+
+
+def sum_block(lamp, blockers, cell, keys, count, pivot):
+    """Sum of (f - pivot) and of its square over `count` samples, f per strength of the lamp."""
+
+
+@overload(sum_block)
+def _sum_block(lamp, blockers, cell, keys, count, pivot):
+    return sum_staged if isinstance(blockers, types.Array) else sum_fused
+
+
+def sum_fused(lamp, blockers, cell, keys, count, pivot):
+    """Few blockers: all in one loop, which runs in vector registers."""
     zero = like(pivot, 0)
     total, square = zero, zero
     for i in range(count):
-        h = hash32(i, start)
-        s, t = like(pivot, ticks(h, ONE, np.uint32(0))), like(pivot, ticks(h, A1, shift_t))
-        p, q = like(pivot, ticks(h, A2, shift_p)), like(pivot, ticks(h, A3, shift_q))
-        f = sample(lamp, blockers, cell, s, t, p, q) - pivot
+        s, t, p, q = draws(i, keys, pivot)
+        x = on_cell(cell, p, q)
+        f, d = arriving(lamp, x, s, t)
+        f = (f if visible(blockers, x, d) else zero) - pivot
         total += f
         square += f * f
     return total, square
 
 
+def sum_staged(lamp, blockers, cell, keys, count, pivot):
+    """Many blockers: the block's samples are laid out first, then shadowed by one blocker after the other."""
+    x, d, f = np.full((2, count), pivot), np.full((3, count), pivot), np.full(count, pivot)
+    for i in range(count):
+        s, t, p, q = draws(i, keys, pivot)
+        at = on_cell(cell, p, q)
+        f[i], to = arriving(lamp, at, s, t)
+        x[0, i], x[1, i] = at[0], at[1]
+        d[0, i], d[1, i], d[2, i] = to
+    shadow_all(blockers, x, d, f)
+    total, square = like(pivot, 0), like(pivot, 0)
+    for i in range(count):
+        total += f[i] - pivot
+        square += (f[i] - pivot) * (f[i] - pivot)
+    return total, square
+
+
 @fast
-def sample(lamp, blockers, cell, s, t, p, q):
-    """One estimate of the element's irradiance from four draws: s, t on the light, p, q on the element."""
-    x = p * cell[0] + q * cell[1], q * cell[2], like(p, 0)
-    f, d = arriving(lamp, x, s, t)
-    return f if visible(blockers, x, d) else like(p, 0)
+def sum_blocks(lamp, blockers, cell, key, blocks, samples, pivot):
+    """The same over blocks `blocks[0]` to `blocks[1]` of `samples`, in float64; every block has its own random key."""
+    total, square = 0.0, 0.0
+    for block in range(blocks[0], blocks[1]):
+        sums = sum_block(lamp, blockers, cell, block_keys(key, block), min(BLOCK, samples - block * BLOCK), pivot)
+        total += sums[0]
+        square += sums[1]
+    return total, square
 
 
 @fast_kernel
@@ -65,15 +101,10 @@ def estimate(lamp, blockers, elements, first, seed, blocks, samples, model, out)
         cell = like(model, row[12] * TICK), like(model, row[13] * TICK), like(model, row[14] * TICK)
         seen, between = faced(lamp, origin, frame, model), all_placed(blockers, origin, frame, model)
         zero = like(model, 0)
-        pivot = sample(seen, between, cell, zero, zero, zero, zero)
-        total, square = 0.0, 0.0
-        for block in range(blocks[0], blocks[1]):
-            key = stream(seed, first + e, block)
-            sums = sum_block(seen, between, cell, key, min(BLOCK, samples - block * BLOCK), pivot)
-            total += sums[0]
-            square += sums[1]
-        drawn = min(blocks[1] * BLOCK, samples) - blocks[0] * BLOCK
-        out[e, 0], out[e, 1], out[e, 2] = drawn * np.float64(pivot), total, square
+        pivot = sum_block(seen, between, (zero, zero, zero), (ZERO, ZERO, ZERO, ZERO), 1, zero)[0]
+        total, square = sum_blocks(seen, between, cell, stream(seed, first + e, 0), blocks, samples, pivot)
+        drawn = np.float64(min(blocks[1] * BLOCK, samples) - blocks[0] * BLOCK)
+        out[e, 0], out[e, 1], out[e, 2] = lamp.strength * drawn * pivot, lamp.strength * total, lamp.strength**2 * square
 
 
 @dataclass(frozen=True)
@@ -82,7 +113,7 @@ class Piece:
 
     index: int
     lamp: Lamp | Point | Beam
-    blockers: tuple[Flat | Sphere, ...]
+    blockers: tuple[Flat | Sphere, ...] | np.ndarray
     share: float
 
     def film(self, receivers: np.ndarray, samples: int, seed: int, model: np.floating, threads: int) -> tuple:
@@ -103,9 +134,14 @@ def pieces(scene: Scene) -> list[Piece]:
     power = np.array([lamp.strength for _, lamp in owned])
     shares = power / power.sum() if power.any() else np.full(len(owned), 1 / len(owned))
     return [
-        Piece(index, lamp, tuple(between(scene, owner, getattr(lamp, "shape", None), level)), float(share))
+        Piece(index, lamp, packed(between(scene, owner, getattr(lamp, "shape", None), level)), float(share))
         for index, ((owner, lamp), share) in enumerate(zip(owned, shares, strict=True))
     ]
+
+
+def packed(blockers: list[Flat | Sphere]) -> tuple[Flat | Sphere, ...] | np.ndarray:
+    """Few blockers as a tuple, which the kernel is compiled for; many as rows."""
+    return tuple(blockers) if len(blockers) <= FEW else crowd.rows(blockers)
 
 
 class McArea(Estimator):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from lightproof.estimators.compiled import fast, strict
+from lightproof.estimators.vectors import like
 
 A1 = np.uint32(32310901)
 A2 = np.uint32(32310901**2 % 2**32)
@@ -46,6 +47,13 @@ def halves(key):
     return np.uint32(key), np.uint32(key >> np.uint64(32))
 
 
+@strict
+def block_keys(key, block):
+    """For a block of samples of stream `key`: the counter's offset, and the shifts of the lattice's last three coordinates."""
+    own = mix64(key ^ np.uint64(block))
+    return *halves(own), *halves(mix64(own))
+
+
 @fast
 def hash32(index, key):
     """Two rounds of xorshift and multiply (constants of Wellons' lowbias32) over a counter offset by a random key."""
@@ -58,3 +66,11 @@ def hash32(index, key):
 def ticks(h, multiplier, shift):
     """One lattice coordinate as a signed 32-bit integer: times TICK it is uniform in [-1/2, 1/2)."""
     return np.int32(np.uint32(np.uint32(h * multiplier) + shift))
+
+
+@fast
+def draws(index, keys, model):
+    """The four coordinates of sample `index` of a block, in units of TICK and in the type of `model`."""
+    h = hash32(index, keys[0])
+    s, t = like(model, np.int32(h)), like(model, ticks(h, A1, keys[1]))
+    return s, t, like(model, ticks(h, A2, keys[2])), like(model, ticks(h, A3, keys[3]))
