@@ -85,6 +85,12 @@ def test_faults_leave_the_rest_of_a_run_unharmed(command):
     assert counts == [1] * 5
 
 
+def test_a_missing_renderer_is_no_pass(command):
+    """A renderer that is not installed beside one that passes: the run is done, but --strict wants every verdict."""
+    methods = [HONEST, f"{HONEST}/not-installed"]
+    assert [command(*strict, methods=methods)[0] for strict in ((), ("--strict",))] == [0, 3]
+
+
 @pytest.mark.parametrize("fault", ["identical", "ignores-seed"])
 def test_replicates_that_are_none_are_noticed(command, fault):
     """Every film the same: exact light is a pass as of a deterministic method; noise that ignores the seed never is."""
@@ -243,6 +249,7 @@ def test_exit_statuses(outcomes, relaxed, strict):
     """Verdicts do not fail a job that was done; errors do; --strict asks for passes."""
     assert exit_status(outcomes, strict=False, complete=True) == relaxed
     assert exit_status(outcomes, strict=True, complete=True) == strict
+    assert exit_status(outcomes, strict=True, complete=False) == (strict or 3)
 
 
 def test_certify_keeps_and_checks(root, capsys):
