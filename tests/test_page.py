@@ -113,8 +113,9 @@ def test_a_picture_that_cannot_be_made_is_explained(html):
 
 
 def test_sources_are_resolved(html):
-    """The reference cites ramp2026, which the bibliography knows with a DOI."""
-    assert "Ada Ramp, Bo Slope. On &lt;ramps&gt;. 2026" in html and 'href="https://doi.org/10.1000/1"' in html
+    """The reference names its source and cites ramp2026, which the bibliography knows with a DOI."""
+    assert '<a href="https://doi.org/10.1000/1" rel="noreferrer">Ada Ramp and Bo Slope. On &lt;ramps&gt;. 2026</a>' in html
+    assert "<dd>a ramp</dd>" in html
 
 
 def test_a_missing_bibliography_is_no_error(tmp_path):

@@ -24,7 +24,8 @@ class ReferenceError(ValueError):
 
 @dataclass(frozen=True)
 class Reference:
-    """`value` and `uncertainty` (n,) in the film's unit, row-major; `uncertainty` bounds |value - true value|."""
+    """`value` and `uncertainty` (n,) in the film's unit, row-major; `uncertainty` bounds |value - true value|. `source` says in
+    a sentence where the formula is from, `kind` what the uncertainty is worth: an enclosure or a quadrature estimate."""
 
     scene_id: str
     case: str
@@ -36,6 +37,8 @@ class Reference:
     formula: str
     citations: tuple[str, ...]
     scene_digest: str
+    source: str = ""
+    kind: str = ""
 
 
 def read(folder: Path, scene: Scene) -> Reference:
@@ -63,6 +66,8 @@ def read(folder: Path, scene: Scene) -> Reference:
         formula=about["formula"],
         citations=tuple(about["citations"]),
         scene_digest=case["scene_digest"],
+        source=about.get("source", ""),
+        kind=case.get("kind", ""),
     )
 
 

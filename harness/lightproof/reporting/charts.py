@@ -40,6 +40,7 @@ def error_against_time(cells: Sequence[Cell], methods: Sequence[str], tolerance:
         y=alt.Y("error:Q", title="rms error of one film [%]", scale=_log(data.error), axis=_decades(data.error)),
         color=alt.Color("method:N", scale=_range(look, COLOURS), legend=LEGEND),
         shape=alt.Shape("method:N", scale=_range(look, SHAPES), legend=LEGEND),
+        order="samples:Q",
         opacity=alt.condition(chosen, alt.value(1), alt.value(0.15)),
         tooltip=["method", "samples:Q", "time", "rms error", "slope"],
     ).add_params(chosen)

@@ -31,10 +31,10 @@ def _fields(body: str) -> dict[str, str]:
 def _citation(fields: dict[str, str]) -> Citation:
     where = next((fields[name] for name in ("journal", "booktitle", "publisher", "institution", "school", "howpublished")
                   if name in fields), "")
-    parts = (fields.get("author", "").replace(" and ", ", "), fields.get("title", ""), where, fields.get("year", ""))
+    parts = (fields.get("author", ""), fields.get("title", ""), where, fields.get("year", ""))
     doi = fields.get("doi", "")
     link = f"https://doi.org/{doi}" if doi else fields.get("url", "")
-    return Citation(". ".join(part for part in parts if part), link if link.startswith("https://") else "")
+    return Citation(". ".join(part.rstrip(".") for part in parts if part), link if link.startswith("https://") else "")
 
 
 def _plain(value: str) -> str:
