@@ -86,7 +86,7 @@ def test_one_bad_element_forbids_a_pass_and_fails():
     spot = LIGHT + 0.064 * ((ROW == 6) & (COLUMN == 10))
     found = judged({64: noisy(spot, QUIET / 4), 256: noisy(spot, QUIET / 8, seed=2)})
     assert outcomes(found) == ["undecided", "fail"]
-    assert found.reason.startswith("element at row 6, column 10 is off by +1.5")
+    assert found.reason.startswith("the element at row 6, column 10 is off by +1.5")
 
 
 def test_noise_alone_neither_passes_nor_fails():
@@ -104,6 +104,13 @@ def test_samples_needed_is_the_rule_as_stated():
     q = -ladder.statistics.stdtrit(15, (1 - (1 - 0.004) ** (1 / 65)) / 2)
     expected = 64 * ((q + 3) * tiles.std(axis=0, ddof=1).max() / (4 * 0.005)) ** 2
     assert judged({64: films}).samples_needed == int(np.ceil(expected))
+
+
+def test_a_bias_at_the_tolerance_needs_the_next_step_at_least():
+    """0.49 % too bright, tolerance 0.5 %: noise is far below the tolerance already, yet the intervals cross it."""
+    found = judged({64: noisy(LIGHT + 0.0196, QUIET)})
+    assert found.outcome is Outcome.UNDECIDED
+    assert found.samples_needed == 256
 
 
 def test_an_interval_too_wide_does_not_vote():
@@ -181,6 +188,17 @@ def test_uncertainty_as_wide_as_the_tolerance_never_passes():
     assert found.outcome is Outcome.UNDECIDED
     assert found.samples_needed is None
     assert found.reason.startswith("no number of samples decides: the output's steps leave ±0.6 %")
+
+
+@pytest.mark.parametrize("grid, index, words", [
+    ((12, 16), 0, "the tile of rows 0-1, columns 0-1"), ((12, 16), 47, "the tile of rows 10-11, columns 14-15"),
+    ((12, 16), 48, "the film's mean"), ((12, 16), 49 + 17, "the element at row 1, column 1"),
+    ((1, 100), 49, "the tile of points 98-99"), ((1, 100), 51 + 7, "point 7"),
+])
+def test_places_have_words(grid, index, words):
+    """12 x 16 elements in 48 tiles of 2 x 2; 100 points in 50 tiles of 2."""
+    nothing = np.zeros(grid[0] * grid[1])
+    assert ladder.Scale(grid, nothing, nothing, nothing).place(index) == words
 
 
 # The scale of errors

@@ -51,14 +51,17 @@ class Scale:
 
     def place(self, index: int) -> str:
         """What an interval is about, in words."""
+        points = self.grid[0] == 1
         if index == self.tiles:
             return "the film's mean"
         if index > self.tiles:
-            return "element at row {}, column {}".format(*divmod(index - self.tiles - 1, self.grid[1]))
-        starts = statistics.tile_starts(self.grid)
-        spans = (np.append(first, length)[[at, at + 1]] - [0, 1]
-                 for first, length, at in zip(starts, self.grid, divmod(index, len(starts[1])), strict=True))
-        return "the tile of rows {}-{}, columns {}-{}".format(*np.concatenate([*spans]))
+            row, column = divmod(index - self.tiles - 1, self.grid[1])
+            return f"point {column}" if points else f"the element at row {row}, column {column}"
+        rows, columns = statistics.tile_starts(self.grid)
+        top, left = divmod(index, len(columns))
+        bottom, right = (*rows[1:], self.grid[0])[top] - 1, (*columns[1:], self.grid[1])[left] - 1
+        across = f"{columns[left]}-{right}"
+        return f"the tile of points {across}" if points else f"the tile of rows {rows[top]}-{bottom}, columns {across}"
 
     @cached_property
     def lit(self) -> np.ndarray:
