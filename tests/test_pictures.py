@@ -54,7 +54,7 @@ def _ended(status: int, message: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_camera_sees_every_point_and_no_more():
-    """1,000 random points: all project inside the frame, and the extreme ones come to its border, but for the border left free."""
+    """1,000 random points: all project inside the frame, and the extreme ones reach the border that is left free."""
     points = np.random.default_rng(7).normal(size=(1000, 3)) * (3.1, 0.7, 1.9) + (5, -2, 11)
     camera = framing.camera(points, 1.6)
     right, up, forward = geometry.camera_frame(tuple(camera.origin), tuple(camera.target), (0, 0, 1))

@@ -27,7 +27,7 @@ WIDTH, HEIGHT = 800, 500
 SAMPLES = 25
 BACKGROUND = np.array([0.80, 0.83, 0.87])
 FILL = 0.56  # weight of the white surrounding
-GLOW = np.array([0.66, 0.61, 0.50])  # colour and weight of the scene's own light
+GLOW = 0.66  # weight of the scene's own light
 SECONDS = 600
 MISSING = 3  # exit status: the renderer is not there
 
@@ -82,7 +82,7 @@ def _mitsuba() -> ModuleType:
 
 def _compose(mi: ModuleType, scene: Scene) -> np.ndarray:
     """Linear image (rows, columns, 3): background, the set-up in white surroundings, and its own light on top."""
-    fill = _shoot(mi, stage.Stage(mi, scene, lit=False), {"surrounding": {"type": "constant", "radiance": stage.grey(1.0)}})
+    fill = _shoot(mi, stage.Stage(mi, scene, lit=False), {"surrounding": {"type": "constant", "radiance": 1.0}})
     own = _shoot(mi, stage.Stage(mi, scene, lit=True), {})[:, :, :3]
     alpha = fill[:, :, 3:].clip(0, 1)
     return BACKGROUND * (1 - alpha) + FILL * fill[:, :, :3] + GLOW * _developed(own)

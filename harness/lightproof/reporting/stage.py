@@ -18,8 +18,9 @@ from lightproof.reporting import framing
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, Light, PlaneFilm, PointLight, PointsFilm, Scene, Surface
 
 LAMP, LAMP_BACK = (0.99, 0.93, 0.72), (0.95, 0.80, 0.42)
-BLOCKER, RIM, SKY = (0.16, 0.20, 0.28), (0.42, 0.47, 0.55), (0.72, 0.86, 1.00)
+BLOCKER, RIM, SKY, SKY_OFF = (0.16, 0.20, 0.28), (0.42, 0.47, 0.55), (0.7, 0.9, 1.2), (0.4, 0.5, 0.6)
 CELLS = (0.64, 0.65, 0.67), (0.50, 0.52, 0.55)
+WARM = (1.0, 0.93, 0.77)
 INK, DOT = (0.13, 0.27, 0.58), (0.80, 0.16, 0.14)
 SHEET, LINE, BULB = 2e-3, 2.5e-3, 1.3e-2  # thickness of sheets and radii of lines and dots, of the picture's size
 OPEN = 0.25  # how far in front of a sphere's centre it is cut open, of its radius
@@ -66,11 +67,11 @@ class Stage:
                 self._dome(upper=getattr(light, "extent", "upper") == "upper")
 
     def _lamp(self, radiance: float) -> dict[str, Any]:
-        return {"emitter": {"type": "area", "radiance": grey(radiance)}} if self.lit else paint(LAMP)
+        return {"emitter": {"type": "area", "radiance": warm(radiance)}} if self.lit else paint(LAMP)
 
     def _beam(self, light: DirectionalLight) -> None:
         if self.lit:
-            self._add({"type": "directional", "direction": list(light.direction), "irradiance": grey(light.irradiance)})
+            self._add({"type": "directional", "direction": list(light.direction), "irradiance": warm(light.irradiance)})
         way = 0.3 * self.box.size * geometry.unit(light.direction)
         for offset in np.array(geometry.tangents(light.direction)) * 0.15 * self.box.size:
             for start in (-offset, offset):
@@ -82,13 +83,13 @@ class Stage:
         sky = _cut(mesh.tessellate(Sphere(tuple(centre), 0.62 * self.box.size), inside=True), centre, framing.towards_viewer())
         if upper:
             sky = _cut(sky, np.array([0, 0, min(0, self.box.low[2])]), np.array([0.0, 0, -1]))
-        self._triangles(sky, paint(SKY))
+        self._triangles(sky, {"emitter": {"type": "area", "radiance": rgb(SKY)}} if self.lit else paint(SKY_OFF))
 
     def _surface(self, surface: Surface) -> None:
         colour = (surface.reflectance,) * 3 if surface.reflectance else BLOCKER
         content = paint(colour)
         if surface.radiance and self.lit:
-            content["emitter"] = {"type": "area", "radiance": grey(surface.radiance)}
+            content["emitter"] = {"type": "area", "radiance": warm(surface.radiance)}
         if surface.side == "inside" and isinstance(surface.shape, Sphere):
             self._bowl(surface.shape, content)
         elif isinstance(surface.shape, Polygon):
@@ -174,9 +175,9 @@ def rgb(colour: tuple[float, float, float]) -> dict[str, Any]:
     return {"type": "rgb", "value": list(colour)}
 
 
-def grey(value: float) -> dict[str, Any]:
-    """The same radiometric value in all three channels."""
-    return rgb((value, value, value))
+def warm(value: float) -> dict[str, Any]:
+    """A radiometric value, tinted as lamps are."""
+    return rgb(tuple(value * part for part in WARM))
 
 
 def _back(shape: Polygon | Disk, gap: float) -> Shape:
