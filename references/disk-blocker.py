@@ -51,8 +51,8 @@ def flux(x_span, y_span, rims, disks):
 
 def rule(span, stops):
     """Nodes and weights over an interval split at the stops inside it."""
-    ends = sorted({*span, *(stop for stop in stops if span[0] < stop < span[1])})
-    return [(a + (b - a) * node, (b - a) * share) for a, b in pairwise(ends) for node, share in zip(STRETCHED, SHARES, strict=True)]
+    ends = pairwise(sorted({*span, *(stop for stop in stops if span[0] < stop < span[1])}))
+    return [(a + (b - a) * node, (b - a) * share) for a, b in ends for node, share in zip(STRETCHED, SHARES, strict=True)]
 
 
 def visible(r, light, blocker, h, k):

@@ -41,7 +41,7 @@ def check_out_of_sight(film, blade, lamp, share):
     """No ray from the film to the lamp passes beyond the blade's far ends, `share` of the way up."""
     x1, y0, y1 = lamp
     lows = np.array(film["origin"][:2])
-    highs = lows + [film["u"][0], film["v"][1]]
+    highs = lows + np.array([film["u"][0], film["v"][1]])
     assert highs[0] + (x1 - highs[0]) * share < blade[:, 0].max()
     assert highs[1] + (y1 - highs[1]) * share < blade[:, 1].max() and lows[1] + (y0 - lows[1]) * share > blade[:, 1].min()
 

@@ -21,7 +21,8 @@ def values(scene, elements):
     means = []
     for element in elements:
         row, column = divmod(element, columns)
-        a, b, c, d = (origin + u * mpf(column + i) / columns + v * mpf(row + j) / rows - lamp for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)))
+        corners = ((column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1))
+        a, b, c, d = (origin + u * mpf(x) / columns + v * mpf(y) / rows - lamp for x, y in corners)
         means.append(mpf(light["intensity"]) * (solid_angle(a, c, b) + solid_angle(a, d, c)) / area)
     return [float(mean) for mean in means]
 

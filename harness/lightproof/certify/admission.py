@@ -17,10 +17,10 @@ from pathlib import Path
 
 import numpy as np
 
-from lightproof.certify import provenance
+from lightproof.certify import provenance, register
 from lightproof.certify.balls import CannotCertify
 from lightproof.certify.engine import Certified, certify
-from lightproof.scene import PointsFilm, Scene
+from lightproof.scene import PlaneFilm, PointsFilm, Scene
 
 AT_POINTS, OF_MEANS, IN_SHADOWS = 1e-15, 1e-12, 1e-9  # largest uncertainty, relative to the film's largest value
 BELOW_TOLERANCE = 1000  # times the uncertainty must fit into the scene's tolerance
@@ -39,7 +39,7 @@ class Admitted:
     @property
     def scale(self) -> float:
         """The film's largest value, or 1 where all is dark."""
-        return float(np.abs(self.certified.value).max()) or 1.0
+        return _scale(self.certified.value)
 
     @property
     def uncertainty(self) -> np.ndarray:
@@ -49,17 +49,16 @@ class Admitted:
 
 
 def admit(scene: Scene, folder: Path, progress: Callable[[], None] = lambda: None) -> Admitted:
-    """The reference of one scene, from both engines; `folder` is the suite's references/, `progress` is called after each element.
+    """The reference of one scene, from both engines; `folder` is the suite's references/.
 
     Without a second script the first engine stands alone, its values being proven enclosures. Raises CannotCertify where no
-    engine covers the scene, or where an acceptance criterion fails.
+    engine covers the scene, or where an acceptance criterion fails. `progress` is called after each element.
     """
     certified = certify(scene, progress=progress)
-    scale = float(np.abs(certified.value).max()) or 1.0
     script = folder / f"{scene.id}.py"
     if script.is_file():
         difference = float(np.abs(second(script, scene, range(scene.size)) - certified.value).max())
-        admitted = Admitted(scene, certified, script.name, difference / scale)
+        admitted = Admitted(scene, certified, script.name, difference / _scale(certified.value))
     else:
         admitted = Admitted(scene, certified, "none", math.nan)
     _accept(admitted)
@@ -71,29 +70,43 @@ def second(script: Path, scene: Scene, elements: Iterable[int]) -> np.ndarray:
     return np.array(runpy.run_path(str(script))["values"](scene.to_table(), list(elements)))
 
 
-def limit(scene: Scene) -> float:
-    """The largest uncertainty with which a reference is admitted, relative to the film's largest value."""
-    shadows = scene.surfaces and scene.film.quantity == "irradiance" and scene.max_bounces == 0
-    means = IN_SHADOWS if shadows else OF_MEANS
-    scale = scene.tolerance_scale if isinstance(scene.tolerance_scale, float) else 1.0
-    return min(AT_POINTS if isinstance(scene.film, PointsFilm) else means, scene.tolerance * scale / BELOW_TOLERANCE)
+def limit(scene: Scene, value: np.ndarray) -> np.ndarray:
+    """(n,) The largest uncertainty [the film's unit] with which each element of a film `value` (n,) is admitted."""
+    largest = np.full_like(value, _scale(value))
+    scales = {"max": largest, "element": np.abs(value)}
+    scale = scales.get(scene.tolerance_scale, scene.tolerance_scale)
+    return np.minimum(_class(scene) * largest, scene.tolerance * scale / BELOW_TOLERANCE)
+
+
+def _class(scene: Scene) -> float:
+    if isinstance(scene.film, PointsFilm):
+        return AT_POINTS
+    return IN_SHADOWS if scene.surfaces and isinstance(scene.film, PlaneFilm) else OF_MEANS
+
+
+def _scale(value: np.ndarray) -> float:
+    """The largest value of a film, or 1 where all is dark."""
+    return float(np.abs(value).max()) or 1.0
 
 
 def _accept(admitted: Admitted) -> None:
-    """Raises CannotCertify where the engines' bounds, or the difference between them, exceed the limit."""
-    scene, worst = admitted.scene, float(admitted.uncertainty.max()) / admitted.scale
-    if not worst <= limit(scene):
-        raise CannotCertify(f"{scene.name}: the uncertainty, {worst:.2g} of the film's largest value, exceeds {limit(scene):.2g}"
-                            f" (first engine {admitted.certified.uncertainty.max() / admitted.scale:.2g},"
-                            f" difference from {admitted.second_engine} {admitted.agreement:.2g})")
+    """Raises CannotCertify where the first engine's bound, or the difference between the engines, exceeds the limit."""
+    value, excess = admitted.certified.value, admitted.uncertainty
+    over = np.flatnonzero(~(excess <= limit(admitted.scene, value)))
+    if over.size:
+        raise CannotCertify(f"{admitted.scene.name}: the uncertainty of element {over[0]}, {excess[over[0]]:.2g}, exceeds"
+                            f" {limit(admitted.scene, value)[over[0]]:.2g} (first engine"
+                            f" {admitted.certified.uncertainty[over[0]]:.2g}, {admitted.second_engine} differs by"
+                            f" {admitted.agreement * admitted.scale:.2g} at most)")
 
 
 def write(folder: Path, cases: Mapping[str, Admitted]) -> None:
-    """Write <id>.csv and <id>.toml for every case of one scene."""
+    """Write <id>.csv and <id>.toml for every case of one scene, and the register in the folder's README.md."""
     scene = next(iter(cases.values())).scene
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{scene.id}.csv").write_text(_csv(cases), encoding="utf-8")
     (folder / f"{scene.id}.toml").write_text(_toml(cases), encoding="utf-8")
+    register.refresh(folder)
 
 
 def _csv(cases: Mapping[str, Admitted]) -> str:

@@ -17,18 +17,16 @@ from lightproof import geometry
 from lightproof.certify import direct, emitters
 from lightproof.certify.balls import Ball, CannotCertify, Element, Number, arctan, cross, dot, exact, minus, point, root
 from lightproof.certify.planes import Frame, Plane
-from lightproof.scene import AreaLight, PlaneFilm, Scene
+from lightproof.scene import AreaLight, PlaneFilm, Scene, Surface
 
 GOAL = 2.0**-64  # of each piece: radiance times square metres
 
 
 def covers(scene_: Scene) -> bool:
     """Whether a disk light stands over a disk blocker."""
-    return (
-        isinstance(scene_.film, PlaneFilm)
-        and [type(light.shape) for light in scene_.lights if isinstance(light, AreaLight)] == [geometry.Disk]
-        and [type(surface.shape) for surface in scene_.surfaces] == [geometry.Disk]
-    )
+    things = (*scene_.lights, *scene_.surfaces)
+    shapes = [type(thing.shape) for thing in things if isinstance(thing, AreaLight | Surface)]
+    return isinstance(scene_.film, PlaneFilm) and len(things) == len(scene_.surfaces) + 1 and shapes == [geometry.Disk] * 2
 
 
 @dataclass(frozen=True)
@@ -93,6 +91,8 @@ def solve(scene_: Scene) -> Element:
     """Mean irradiance of each cell. Raises CannotCertify."""
     frame = Frame.of(scene_.film)
     light, blocker = scene_.lights[0], scene_.surfaces[0]
+    if scene_.reflects or blocker.radiance > 0:
+        raise CannotCertify("a blocker that reflects or emits light is not covered")
     axis = _check(frame, light.shape, blocker.shape)
     formula = emitters.disk_light(light.shape, light.radiance, frame.plane)
     open_light = [direct.Field(lambda x: formula)]
@@ -140,10 +140,12 @@ def _corner(shadow: Shadow, a: arb, b: arb) -> arb:
         return -_corner(shadow, -a, b)
     if b < 0:
         return -_corner(shadow, a, -b)
-    inner, outer = shadow.rims
-    ends = [arb(0), *sorted((arb(x) for x in (a, b, root(a * a + b * b), inner, outer)), key=float)]
-    last = min(float(outer), float(root(a * a + b * b)))
-    pieces = [(p, q) for p, q in pairwise(ends) if float(q) <= last and float(p) < float(q)]
+    if not (a > 0 and b > 0):
+        return arb(0, abs(a * b * shadow.light.whole(arb(0))).abs_upper())
+    inner, outer, far = *map(arb, shadow.rims), root(a * a + b * b)
+    last = min(outer, far, key=arb.mid)
+    ends = sorted((arb(0), a, b, far, inner, outer), key=arb.mid)
+    pieces = [(p, q) for p, q in pairwise(ends) if p < q and not q > last]
     return sum((_piece(shadow, (a, b), p, q) + _piece(shadow, (a, b), q, p) for p, q in pieces), arb(0))
 
 

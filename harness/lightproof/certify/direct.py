@@ -13,7 +13,7 @@ from lightproof.certify import emitters, planes, quadrature
 from lightproof.certify.balls import Ball, CannotCertify, Element, Point, dot, exact, point, unit
 from lightproof.certify.emitters import Formula
 from lightproof.certify.planes import Frame, Patch, Plane, Region
-from lightproof.certify.polygon import Parts, area_vector, clip, convex_parts, lambert, visible
+from lightproof.certify.polygon import Parts, clip, convex_parts, lambert, visible
 from lightproof.scene import AreaLight, Scene
 
 Shape = geometry.Shape
@@ -22,8 +22,7 @@ Shape = geometry.Shape
 @dataclass(frozen=True)
 class Field:
     """Irradiance on one side of a plane from one light: `near(point)` is the formula that holds around a point of the plane,
-    up to the next of the planes `events`, where the light's visible shape
-    changes (None where it changes across curved surfaces too)."""
+    up to the next of the planes `events`, where the light's visible shape changes (None: across curved surfaces too)."""
 
     near: Callable[[Point], Formula]
     events: tuple[Plane, ...] | None = ()
@@ -31,25 +30,22 @@ class Field:
 
 def fields(scene_: Scene, receiver: Plane) -> list[Field]:
     """One field a light for receivers on the front of a plane. Raises CannotCertify."""
-    shapes = _opaque(scene_)
-    made = []
-    for light in scene_.lights:
-        others = [shape for name, shape in shapes.items() if name != light.id and not _lies_on(shape, receiver)]
-        made.append(_field(light, others, receiver))
     for surface in scene_.surfaces:
         if surface.radiance > 0:
             raise CannotCertify(f"surface '{surface.id}' emits light of its own; give it as an area light")
-    return made
-
-
-def _opaque(scene_: Scene) -> dict[str, Shape]:
     lights = [light for light in scene_.lights if isinstance(light, AreaLight)]
-    return {item.id: item.shape for item in (*lights, *scene_.surfaces)}
+    shapes = {item.id: item.shape for item in (*lights, *scene_.surfaces) if not _lies_on(item.shape, receiver)}
+    return [_field(light, [shape for name, shape in shapes.items() if name != light.id], receiver) for light in scene_.lights]
 
 
 def _lies_on(shape: Shape, plane: Plane) -> bool:
-    """Whether a flat shape has no part in front of the plane: it then blocks nothing."""
-    return isinstance(shape, geometry.Polygon) and all(plane.height(point(corner)) <= 0 for corner in shape.vertices)
+    """Whether a polygon has no part in front of the plane, but for the rounding of its corners: it then blocks nothing."""
+    if not isinstance(shape, geometry.Polygon):
+        return False
+    corners = [point(corner) for corner in shape.vertices]
+    size = max(max(axis) - min(axis) for axis in zip(*corners, strict=True))
+    slack = (exact(geometry.PLANARITY) * size) ** 2 * dot(plane.normal, plane.normal)
+    return all((height := plane.height(corner)) <= 0 or height * height <= slack for corner in corners)
 
 
 def _field(light: scene.Light, blockers: list[Shape], receiver: Plane) -> Field:
@@ -87,7 +83,7 @@ def _round(light: AreaLight, receiver: Plane) -> Field:
 def _polygon(shape: geometry.Polygon, radiance: float, blockers: list[Shape], receiver: Plane) -> Field:
     """Lambert's formula for what the receiver sees of a polygon light above its horizon and past the blockers."""
     corners = tuple(point(corner) for corner in shape.vertices)
-    face = Plane(area_vector(corners), dot(area_vector(corners), corners[0]))
+    face = planes.of(corners)
     above = clip(corners, receiver.normal, receiver.offset)
     between = tuple(filter(None, (_blocker(blocker, face, receiver) for blocker in blockers)))
     light = convex_parts(above) if above else ()
@@ -113,9 +109,11 @@ def _blocker(shape: Shape, face: Plane, receiver: Plane) -> Parts:
 
 
 def _events(light: Parts, blockers: tuple[Parts, ...]) -> Iterable[Plane]:
-    """The planes in which a corner of the light is seen on an edge of the blocker, or the other way round."""
+    """The planes in which a corner of the light is seen on an edge of the blocker, or the other way round, or the blocker is
+    seen edge-on."""
     for _, corners in light:
         for _, shadow in (part for blocker in blockers for part in blocker):
+            yield planes.of(shadow)
             for points, edges in ((corners, shadow), (shadow, corners)):
                 yield from (planes.through(p, edges[i - 1], edges[i]) for p in points for i in range(len(edges)))
 

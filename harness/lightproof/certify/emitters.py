@@ -12,7 +12,7 @@ from flint import arb
 
 from lightproof import geometry, scene
 from lightproof.certify import balls
-from lightproof.certify.balls import Ball, CannotCertify, Number, Point, Rational, Vector, cross, dot, exact, minus, point, root, unit
+from lightproof.certify.balls import Ball, CannotCertify, Number, Point, Vector, cross, dot, exact, minus, point, root, unit
 from lightproof.certify.planes import Plane
 
 Formula = Callable[[Vector], Ball]  # receiver -> irradiance [W/m2]
@@ -133,7 +133,7 @@ def disk_light(shape: geometry.Disk, radiance: float, receiver: Plane) -> Formul
     return irradiance
 
 
-def _sine_squared(a: Point, b: Point) -> Rational:
+def _sine_squared(a: Point, b: Point) -> Number:
     """sin^2 of the angle between two exact directions."""
     return dot(cross(a, b), cross(a, b)) / (dot(a, a) * dot(b, b))
 

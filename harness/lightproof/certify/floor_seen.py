@@ -2,33 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import direct, quadrature
+from lightproof.certify import direct, planes, quadrature
 from lightproof.certify.balls import Ball, CannotCertify, Element, Point, Vector, cross, dot, exact, minus, plus, point, times
 from lightproof.certify.camera import Camera
 from lightproof.certify.planes import Plane
-from lightproof.certify.polygon import area_vector
 from lightproof.scene import Scene
+
+Ray = tuple[Vector, Vector]  # origin and direction
 
 
 def solve(scene_: Scene) -> Element:
     """Mean radiance of each pixel. Raises CannotCertify."""
     floor = _floor(scene_)
     corners = [point(corner) for corner in floor.shape.vertices]
-    plane = Plane(area_vector(corners), dot(area_vector(corners), corners[0]))
+    plane = planes.of(corners)
+    if floor.radiance > 0:
+        raise CannotCertify(f"surface '{floor.id}' emits light of its own; only a floor that reflects is covered")
     camera = Camera.of(scene_.film)
     _check_lights(scene_, plane, plane.height(camera.origin))
-    lights = direct.fields(scene_, plane) if scene_.max_bounces != 0 else []
+    lights = direct.fields(replace(scene_, surfaces=()), plane) if scene_.max_bounces != 0 else []
     factor = exact(floor.reflectance) / arb.pi()
 
     def element(index: int) -> arb:
         def hit(s: Ball, t: Ball) -> Vector:
-            origin, along = camera.ray(index, s, t)
-            return plus(origin, times(along, -plane.height(origin) / dot(plane.normal, along)))
+            return _hit(camera.ray(index, s, t), plane)
 
-        _check_pixel([hit(arb(s), arb(t)) for s in (-1, 1) for t in (-1, 1)], corners, plane.normal)
+        _check_pixel([camera.ray(index, arb(s), arb(t)) for s in (-1, 1) for t in (-1, 1)], plane, corners)
         formulas = _formulas(lights, hit)
         return quadrature.mean(lambda s, t: factor * sum((formula(x) for formula in formulas for x in [hit(s, t)]), arb(0)))
 
@@ -52,15 +57,22 @@ def _check_lights(scene_: Scene, floor: Plane, camera: Ball) -> None:
                 raise CannotCertify(f"light '{light.id}' may stand between the camera and the floor")
 
 
-def _check_pixel(hits: list[Vector], corners: list[Point], normal: Point) -> None:
-    """All four corner rays go down and meet the convex floor."""
-    for x in hits:
+def _hit(ray: Ray, floor: Plane) -> Vector:
+    """Where a ray meets the floor's plane."""
+    origin, along = ray
+    return plus(origin, times(along, -floor.height(origin) / dot(floor.normal, along)))
+
+
+def _check_pixel(rays: list[Ray], floor: Plane, corners: list[Point]) -> None:
+    """All four corner rays go down and meet the floor on the inner side of each of its edges."""
+    for ray in rays:
+        below = dot(floor.normal, ray[1]) < 0
         for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
-            if not dot(normal, cross(minus(end, start), minus(x, start))) > 0:
+            if not (below and dot(floor.normal, cross(minus(end, start), minus(_hit(ray, floor), start))) > 0):
                 raise CannotCertify("a pixel sees past the floor")
 
 
-def _formulas(lights: list[direct.Field], hit) -> list[direct.Formula]:
+def _formulas(lights: list[direct.Field], hit: Callable[[Ball, Ball], Vector]) -> list[direct.Formula]:
     """The lights' formulas, which must hold over the whole pixel."""
     whole = hit(arb(0, 1), arb(0, 1))
     middle = tuple(exact(float(component)) for component in hit(arb(0), arb(0)))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from flint import fmpq
 
 from lightproof.certify.balls import Ball, Point, Rational, Vector, cross, dot, exact, minus, plus, point, times, unit
+from lightproof.certify.polygon import area_vector
 from lightproof.scene import PlaneFilm
 
 Flat = tuple[Rational, Rational]  # position on a film: 0 to 1 along u and along v
@@ -25,6 +26,12 @@ class Plane:
     def height(self, x: Vector) -> Ball:
         """normal . x - offset: positive in front."""
         return dot(self.normal, x) - self.offset
+
+
+def of(corners: Sequence[Point]) -> Plane:
+    """The plane of a polygon, its front the polygon's."""
+    normal = area_vector(corners)
+    return Plane(normal, dot(normal, corners[0]))
 
 
 def through(a: Point, b: Point, c: Point) -> Plane:

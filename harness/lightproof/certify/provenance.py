@@ -18,39 +18,59 @@ class Provenance:
     citations: tuple[str, ...]
 
 
+SPHERE_THEOREM = "Inside a sphere the form factor to an area dA is dA/(4 π r²) from everywhere (the integrating sphere)."
+
 POLYGON = Provenance(
-    "E = (L/2) Σ θᵢ (gᵢ · n): half the sum over the polygon's edges of the angle θᵢ an edge subtends times the cosine between its plane and the receiver",
-    "Lambert's formula for polygons (Photometria, 1760), as in Arvo's section on irradiance.", ("lambert1760", "arvo1995"))
+    "E = (L/2) Σ θᵢ (gᵢ · n): half the sum, over the polygon's edges, of the angle θᵢ that an edge subtends times the cosine"
+    " between the plane of that angle and the receiver",
+    "Lambert's formula for polygons, as Arvo gives it.",
+    ("lambert1760", "arvo1995"),
+)
 SHADOW = Provenance(
     "E = (L/2) Σ θᵢ (gᵢ · n) over the edges of what the receiver sees of the light past the blocker",
-    "Lambert's formula on the visible part of the light (Arvo 1994).", ("lambert1760", "arvo1994"))
+    "Lambert's formula on the visible part of the light, as in Arvo 1994.",
+    ("lambert1760", "arvo1994"),
+)
 DISK = Provenance(
-    "E = (π L/2) [1 − (h² + a² − r²)/√((h² + a² + r²)² − 4 r² a²)] for a parallel disk; tilted: the same contour integral around its rim",
-    "The contour integral of Lambert's formula around a circle; the parallel disk stands in Howell's catalogue.", ("lambert1760", "howell"))
+    "E = (π L/2) [1 − (h² + a² − r²)/√((h² + a² + r²)² − 4 r² a²)] for a parallel disk; the same contour integral if tilted",
+    "Lambert's contour integral around a circle; the parallel disk is in Howell's catalogue.",
+    ("lambert1760", "howell"),
+)
 DISK_SHADOW = Provenance(
     "E = (L/2) ∮ ((y − x) × dy) · n / |y − x|² around what is seen of the light: arcs of the light's rim and of the blocker's",
-    "Lambert's contour integral along circular arcs, integrated over the distance from the common axis.", ("lambert1760", "arvo1994"))
+    "Lambert's contour integral along circular arcs, integrated over the distance from the common axis.",
+    ("lambert1760", "arvo1994"),
+)
 SPHERE = Provenance(
-    "E = π L (R/d)² cos θ where the sphere is whole; cut by the horizon: E = L [(R/d)² (cos θ acos y − x sin θ √(1−y²)) + atan(sin θ √(1−y²)/x)],"
-    " x = √(d²/R² − 1), y = −x cot θ",
-    "Snyder 1996 for the sphere cut by the horizon; the whole sphere stands in Howell's catalogue.", ("snyder1996", "howell"))
-POINT = Provenance("E = I cos θ / r²", "The inverse square and cosine laws (Lambert, Photometria, 1760).", ("lambert1760",))
-BEAM = Provenance("E = E₀ cos θ", "The cosine law (Lambert, Photometria, 1760).", ("lambert1760",))
+    "E = π L (R/d)² cos θ where the sphere is whole; cut by the horizon,"
+    " E = L [(R/d)² (cos θ acos y − x sin θ √(1 − y²)) + atan(sin θ √(1 − y²)/x)], x = √(d²/R² − 1), y = −x cot θ",
+    "Snyder 1996 for the sphere cut by the horizon; the whole sphere is in Howell's catalogue.",
+    ("snyder1996", "howell"),
+)
+POINT = Provenance("E = I cos θ / r²", "The inverse square and cosine laws.", ("lambert1760",))
+BEAM = Provenance("E = E₀ cos θ", "The cosine law.", ("lambert1760",))
 SKY = Provenance(
     "E = π L under a whole sphere of sky; E = π L (1 + cos b)/2 on a plane tilted by b under its upper half",
-    "The integral of cos θ over the visible sky, by Nusselt's projection.", ("howell",))
+    "The integral of L cos θ over the visible sky; the tilted plane is in Howell's catalogue.",
+    ("howell",),
+)
 OVERCAST = Provenance(
     "E = (L_z/3) [π (1 + cos b)/2 + (4/3) ((π − b) cos b + sin b)] on a plane tilted by b",
-    "The integral of L_z (1 + 2 sin γ)/3 cos θ over the visible sky (Moon and Spencer 1942).", ("moon1942",))
-GLOW = Provenance(
-    "L = L_e (1 + ρ + ρ² + …) = L_e/(1 − ρ), E = π L",
-    "The form factor to an area dA inside a sphere is dA/(4 π r²) from everywhere (theory of the integrating sphere).", ("jacquez1955",))
+    "The integral of L_z (1 + 2 sin γ)/3 cos θ over the visible sky; that sky is Moon and Spencer's.",
+    ("moon1942",),
+)
+GLOW = Provenance("L = L_e (1 + ρ + ρ² + …) = L_e/(1 − ρ), E = π L", SPHERE_THEOREM, ("jacquez1955",))
 LIT_SPHERE = Provenance(
-    "E = I (r − c cos γ)/(r² + c² − 2 r c cos γ)^(3/2) + ρ I/(r² (1 − ρ)), L = ρ E/π",
-    "The form factor to an area dA inside a sphere is dA/(4 π r²) from everywhere (theory of the integrating sphere).", ("jacquez1955",))
+    "E = I (r − c cos γ)/(r² + c² − 2 r c cos γ)^(3/2) + ρ I/(r² (1 − ρ)), L = ρ E/π", SPHERE_THEOREM, ("jacquez1955",))
 
 SHAPES = {geometry.Polygon: POLYGON, geometry.Disk: DISK, geometry.Sphere: SPHERE}
-LIGHTS = {scene.PointLight: POINT, scene.DirectionalLight: BEAM, scene.Environment: SKY, scene.OvercastSky: OVERCAST, scene.SunDisc: SPHERE}
+LIGHTS = {
+    scene.PointLight: POINT,
+    scene.DirectionalLight: BEAM,
+    scene.Environment: SKY,
+    scene.OvercastSky: OVERCAST,
+    scene.SunDisc: SPHERE,
+}
 
 
 def of(scene_: Scene) -> Provenance:

@@ -12,9 +12,9 @@ import math
 from collections.abc import Callable
 from functools import cache
 
-from flint import acb, arb, fmpq
+from flint import acb, arb, ctx, fmpq
 
-from lightproof.certify.balls import Ball, CannotCertify
+from lightproof.certify.balls import PRECISION, Ball, CannotCertify
 
 GOAL = 58  # bits below f in the square's centre
 DEPTH = 6  # halvings before giving up
@@ -72,4 +72,5 @@ def _rule(f: Integrand, across: int, along: int) -> arb:
 @cache
 def nodes(order: int) -> tuple[tuple[arb, arb], ...]:
     """Nodes and weights of the Gauss-Legendre rule on [-1, 1], as balls."""
-    return tuple(arb.legendre_p_root(order, k, weight=True) for k in range(order))
+    with ctx.workprec(PRECISION):
+        return tuple(arb.legendre_p_root(order, k, weight=True) for k in range(order))

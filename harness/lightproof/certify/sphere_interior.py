@@ -8,12 +8,12 @@ from flint import arb
 
 from lightproof import geometry, scene
 from lightproof.certify import emitters, quadrature
-from lightproof.certify.balls import Ball, CannotCertify, Element, Vector, dot, exact, minus, plus, point, root, times
+from lightproof.certify.balls import Ball, CannotCertify, Element, Vector, cross, dot, exact, minus, plus, point, root, times
 from lightproof.certify.camera import Camera
 from lightproof.certify.planes import Plane
 from lightproof.scene import Scene
 
-ON_THE_WALL = exact(1e-9)  # of the radius: how far a receiver's binary64 position may lie off the wall
+ROUNDING = exact(1e-15)  # of the radius: how far the binary64 position of a point of the wall may lie off it
 
 
 def covers(scene_: Scene) -> bool:
@@ -29,17 +29,31 @@ def solve(scene_: Scene) -> Element:
         raise CannotCertify("inside a sphere, either the wall glows or there is one point light")
     if film.quantity not in ("radiance", "irradiance") or isinstance(film, scene.PlaneFilm):
         raise CannotCertify("inside a sphere, a camera or points on the wall are covered")
-    inside = [film.origin] if isinstance(film, scene.CameraFilm) else film.positions
-    _check_inside(wall.shape, [*inside, *(light.position for light in lights)])
+    inside = [light.position for light in lights]
+    if isinstance(film, scene.PointsFilm):
+        _check_on_wall(wall.shape, film)
+    else:
+        inside.append(film.origin)
+    _check_inside(wall.shape, inside)
     return _lit(scene_, wall, lights[0]) if lights else _glowing(scene_, wall)
 
 
 def _check_inside(sphere: geometry.Sphere, positions: list[geometry.Vec3]) -> None:
-    limit = (exact(sphere.radius) * (1 + ON_THE_WALL)) ** 2
     for position in positions:
         ray = minus(point(position), point(sphere.center))
-        if dot(ray, ray) > limit:
-            raise CannotCertify(f"{list(position)} lies outside the sphere")
+        if dot(ray, ray) >= exact(sphere.radius) ** 2:
+            raise CannotCertify(f"{list(position)} does not lie inside the sphere")
+
+
+def _check_on_wall(sphere: geometry.Sphere, film: scene.PointsFilm) -> None:
+    """Each point lies on the wall and faces the centre, but for rounding."""
+    radius = exact(sphere.radius)
+    for position, normal in zip(film.positions, film.normals, strict=True):
+        ray, n = minus(point(sphere.center), point(position)), point(normal)
+        aside = cross(ray, n)
+        off = abs(dot(ray, ray) - radius**2) > 2 * ROUNDING * radius**2
+        if off or dot(ray, n) <= 0 or dot(aside, aside) > ROUNDING**2 * dot(ray, ray) * dot(n, n):
+            raise CannotCertify(f"{list(position)} is no point of the wall that faces the centre")
 
 
 def _glowing(scene_: Scene, wall: scene.Surface) -> Element:
