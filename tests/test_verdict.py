@@ -193,10 +193,10 @@ def test_uncertainty_as_wide_as_the_tolerance_never_passes():
 @pytest.mark.parametrize("grid, index, words", [
     ((12, 16), 0, "the tile of rows 0-1, columns 0-1"), ((12, 16), 47, "the tile of rows 10-11, columns 14-15"),
     ((12, 16), 48, "the film's mean"), ((12, 16), 49 + 17, "the element at row 1, column 1"),
-    ((1, 100), 49, "the tile of points 98-99"), ((1, 100), 51 + 7, "point 7"),
+    ((1, 100), 49, "the tile of points 98-99"), ((1, 100), 51 + 7, "point 7"), ((1, 5), 3, "point 3"),
 ])
 def test_places_have_words(grid, index, words):
-    """12 x 16 elements in 48 tiles of 2 x 2; 100 points in 50 tiles of 2."""
+    """12 x 16 elements in 48 tiles of 2 x 2; 100 points in 50 tiles of 2; 5 points, each its own tile."""
     nothing = np.zeros(grid[0] * grid[1])
     assert ladder.Scale(grid, nothing, nothing, nothing).place(index) == words
 

@@ -57,6 +57,8 @@ class Scale:
         if index > self.tiles:
             row, column = divmod(index - self.tiles - 1, self.grid[1])
             return f"point {column}" if points else f"the element at row {row}, column {column}"
+        if points and self.tiles == self.grid[1]:
+            return f"point {index}"
         rows, columns = statistics.tile_starts(self.grid)
         top, left = divmod(index, len(columns))
         bottom, right = (*rows[1:], self.grid[0])[top] - 1, (*columns[1:], self.grid[1])[left] - 1
