@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
-from lightproof import suite, verdict
+from lightproof import ladder, suite, verdict
 from lightproof.reference import Reference, ReferenceError
 from lightproof.runner import Decision
 from lightproof.scene import Scene
@@ -30,19 +30,20 @@ class Homes(Suite):
         return home.reference(scene) if home and home.root.is_dir() else super().reference(scene)
 
 
-def homes(store: Store) -> Homes:
+def homes(record: Store) -> Homes:
     """Where the references of a run's scenes are."""
-    roots = store.run.options.get("suites", {})
+    roots = record.run.options.get("suites", {})
     return Homes(suite.default().root, {name: Suite(Path(root)) for name, root in roots.items()})
 
 
 class Judge:
-    """Judges the results of one run."""
+    """Judges the results of one run, by the references of `suite` (default: those that stand beside the run's scenes)."""
 
-    def __init__(self, store: Store):
-        self._scenes = {(scene.id, scene.case): scene for scene in store.scenes}
-        self._suite = homes(store)
-        self._reference = cache(self._read_reference)
+    def __init__(self, record: Store, suite: Suite | None = None):
+        self._scenes = {(scene.id, scene.case): scene for scene in record.scenes}
+        self._suite = suite or homes(record)
+        self._triples = max(ladder.TRIPLES, len(record.scenes) * len(record.run.options.get("methods", ())))
+        self._known = cache(self._look_up)
 
     def scene(self, results: Sequence[Result]) -> Scene:
         """The scene that results are of."""
@@ -50,19 +51,22 @@ class Judge:
 
     def reference(self, results: Sequence[Result]) -> Reference | None:
         """The exact light that results are judged by, where there is one."""
-        return self._reference(self.scene(results))
+        return self._known(self.scene(results))[0]
 
     def judge(self, results: Sequence[Result]) -> Verdict:
-        """The verdict of one method on one scene from all its results."""
-        return verdict.judge(results, self.reference(results), self.scene(results))
+        """The verdict of one method on one scene from all its results; where its light is not known, the reason says why."""
+        scene = self.scene(results)
+        reference, missing = self._known(scene)
+        judged = verdict.judge(results, reference, scene, triples=self._triples)
+        return replace(judged, reason=missing) if judged.outcome is Outcome.NO_REFERENCE else judged
 
     def decide(self, results: Sequence[Result]) -> Decision:
         """What the runner may know of it."""
         judged = self.judge(results)
         return Decision(judged.outcome is not Outcome.UNDECIDED, judged.samples_needed)
 
-    def _read_reference(self, scene: Scene) -> Reference | None:
+    def _look_up(self, scene: Scene) -> tuple[Reference | None, str]:
         try:
-            return self._suite.reference(scene)
-        except ReferenceError:
-            return None
+            return self._suite.reference(scene), ""
+        except ReferenceError as error:
+            return None, str(error)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
-from lightproof import ladder, statistics, verdict
-from lightproof.reference import Reference, ReferenceError
+from lightproof import ladder, statistics
+from lightproof.judging import Judge
+from lightproof.reference import Reference
 from lightproof.renderers.registry import METHODS
 from lightproof.scene import Scene
 from lightproof.store import Run, Store
 from lightproof.suite import Suite
 from lightproof.trial import Result, Status
-from lightproof.verdict import Outcome, Step, Verdict
+from lightproof.verdict import Step, Verdict
 
 
 @dataclass(frozen=True)
@@ -130,34 +129,16 @@ def _rank(method: str) -> tuple[int, str]:
     return (names.index(method) if method in METHODS else len(names), method)
 
 
-def evaluate(store: Store, suite: Suite) -> Evaluation:
-    """Judge every (scene, case, method) of a run. References come from `suite`, and those that it lacks from where the run
-    found the scene. Raises StoreError, FilmError."""
+def evaluate(record: Store, suite: Suite) -> Evaluation:
+    """Judge every (scene, case, method) of a run by the references of `suite`. Raises StoreError, FilmError."""
     groups: dict[tuple[str, str], dict[str, list[Result]]] = {}
-    for result in store.results():
+    for result in record.results():
         of_scene = groups.setdefault((result.trial.scene, result.trial.case), {})
         of_scene.setdefault(result.trial.method, []).append(result)
-    triples = max(ladder.TRIPLES, sum(map(len, groups.values())))
-    cells: list[Cell] = []
-    for scene in store.scenes:
-        reference, missing = _reference(scene, [suite, *_home(scene, store.run)])
-        for method, results in sorted(groups.get((scene.id, scene.case), {}).items(), key=lambda item: _rank(item[0])):
-            judged = verdict.judge(results, reference, scene, triples=triples)
-            if judged.outcome is Outcome.NO_REFERENCE:
-                judged = replace(judged, reason=missing)
-            cells.append(Cell(scene, method, tuple(results), reference, judged))
-    return Evaluation(store.run, store.scenes, tuple(cells))
-
-
-def _home(scene: Scene, run: Run) -> list[Suite]:
-    return [Suite(Path(root)) for name, root in run.options.get("suites", {}).items() if name == scene.name]
-
-
-def _reference(scene: Scene, suites: Sequence[Suite]) -> tuple[Reference | None, str]:
-    missing = ""
-    for suite in suites:
-        try:
-            return suite.reference(scene), ""
-        except ReferenceError as error:
-            missing = str(error)
-    return None, missing
+    judge = Judge(record, suite)
+    cells = [
+        Cell(scene, method, tuple(results), judge.reference(results), judge.judge(results))
+        for scene in record.scenes
+        for method, results in sorted(groups.get((scene.id, scene.case), {}).items(), key=lambda item: _rank(item[0]))
+    ]
+    return Evaluation(record.run, record.scenes, tuple(cells))
