@@ -1,0 +1,87 @@
+"""The stored references: admitted by the rules, and what both engines compute when asked again."""
+
+from __future__ import annotations
+
+import json
+import runpy
+import subprocess
+import sys
+import tomllib
+from functools import cache
+
+import numpy as np
+import pytest
+
+from lightproof import suite
+from lightproof.certify import admission, register
+from lightproof.certify.engine import certify
+from lightproof.reporting import citations
+
+HOME = suite.default()
+FOLDER = HOME.root / "references"
+SCENES = {scene.name: scene for scene in HOME.scenes()}
+ROUNDING = 2e-15  # of a film's largest value: what binary64 sums of 10^5 terms may change with processor and library
+
+
+@cache
+def second_engine(scene_id):
+    """The script's function."""
+    return runpy.run_path(str(FOLDER / f"{scene_id}.py"))["values"]
+
+
+def sample(scene, reference):
+    """A few elements of every kind: the darkest, the brightest, one between."""
+    order = np.argsort(reference.value, kind="stable")
+    return sorted({int(order[0]), int(order[len(order) // 3]), int(order[-1])})
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_admitted_by_the_rules(name):
+    """Every element's uncertainty is within its limit, and no smaller than the difference between the engines."""
+    scene = SCENES[name]
+    reference = HOME.reference(scene)
+    case = tomllib.loads((FOLDER / f"{scene.id}.toml").read_text(encoding="utf-8"))["cases"][scene.case]
+    assert (reference.uncertainty <= admission.limit(scene, reference.value)).all()
+    assert (reference.uncertainty >= reference.agreement * np.abs(reference.value).max()).all()
+    assert (case["kind"], case["second_engine"], case["elements_checked"]) == ("enclosure", f"{scene.id}.py", scene.size)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_derived_again(name):
+    """The first engine finds the stored values bit for bit, the second within the uncertainty and its own rounding."""
+    scene = SCENES[name]
+    reference = HOME.reference(scene)
+    elements = sample(scene, reference)
+    first = certify(scene, elements)
+    second = np.array(second_engine(scene.id)(scene.to_table(), elements))
+    assert (first.value == reference.value[elements]).all()
+    assert (first.uncertainty <= reference.uncertainty[elements]).all()
+    assert (np.abs(second - first.value) <= reference.uncertainty[elements] + ROUNDING * np.abs(reference.value).max()).all()
+
+
+@pytest.mark.parametrize("scene_id", HOME.ids)
+def test_every_source_is_listed(scene_id):
+    """Formula, source and citations are there, and the bibliography knows each citation."""
+    about = tomllib.loads((FOLDER / f"{scene_id}.toml").read_text(encoding="utf-8"))
+    assert about["formula"] and about["source"] and about["citations"]
+    assert set(about["citations"]) <= citations.read(FOLDER / "references.bib").keys()
+
+
+def test_scripts_stand_alone():
+    """No second engine imports the first one, or anything of Lightproof."""
+    for scene_id in HOME.ids:
+        text = (FOLDER / f"{scene_id}.py").read_text(encoding="utf-8")
+        assert "import lightproof" not in text and "from lightproof" not in text
+
+
+def test_a_script_prints_the_base_case():
+    """python references/white-furnace-plane.py: pi times the radiance for each of 192 cells."""
+    path = FOLDER / "white-furnace-plane.py"
+    printed = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, check=True).stdout
+    values = json.loads(printed)["base"]
+    assert len(values) == 192 and set(values.values()) == {np.pi * 1.37}
+
+
+def test_the_register_is_up_to_date():
+    """The table in references/README.md is what the references say."""
+    assert register.table(FOLDER) in (FOLDER / "README.md").read_text(encoding="utf-8")
