@@ -156,6 +156,16 @@ def test_a_hopeless_verdict_gets_three_steps(tmp_path):
     assert max(steps(pool)) == 1024
 
 
+def test_hopeless_verdicts_come_after_others(tmp_path):
+    """a needs more than its budget holds, b costs three times as much and is decided at 256 samples: b's verdict comes first."""
+    pool = FakePool({"a": 1e-6, "b": 3e-6})
+    needed = {"a": 10**9, "b": 256}
+    climb(tmp_path, pool, lambda results: Decision(results[-1].trial.method == "b" and results[-1].trial.samples >= 256,
+                                                   needed[results[0].trial.method]), cell_budget=1.0)  # fmt: skip
+    order = [(trial.method, trial.samples) for trial in pool.asked if trial.replicate == 0]
+    assert order == [("a", 64), ("b", 64), ("b", 256), ("a", 256), ("a", 1024), ("b", 1024)]
+
+
 def test_a_verdict_that_no_samples_decide_gets_three_steps(tmp_path):
     """A verdict that stays undecided whatever the samples, and says so: three steps for the slope, no more."""
     pool = FakePool({"a": 1e-9})

@@ -93,7 +93,18 @@ class Cell:
         """Whether another film would say something and its step fits into the cell's own budget."""
         if self.broken or self.next_samples > self.most_samples or self.seconds + self.next_seconds > self.budget:
             return False
-        return self.height < STEPS_FOR_A_SLOPE or not (self.decision.decided or self._hopeless)
+        return self.height < STEPS_FOR_A_SLOPE or self.decidable
+
+    @property
+    def decidable(self) -> bool:
+        """Whether the verdict is open and the samples that would decide it fit into the budget."""
+        if self.decision.decided or self.decision.samples_needed is None:
+            return False
+        step, cost, total = self.next_samples, self.next_seconds, self.seconds
+        while step < self.decision.samples_needed:
+            total += cost
+            step, cost = step * FACTOR, cost * FACTOR
+        return total + cost <= self.budget
 
     @property
     def timeout(self) -> float:
@@ -116,16 +127,6 @@ class Cell:
     def _films(self) -> int:
         first = next((step[0] for step in self.steps.values()), None)
         return 1 if first and first.deterministic else self.replicates
-
-    @property
-    def _hopeless(self) -> bool:
-        if self.decision.samples_needed is None:
-            return True
-        step, cost, total = self.next_samples, self.next_seconds, self.seconds
-        while step < self.decision.samples_needed:
-            total += cost
-            step, cost = step * FACTOR, cost * FACTOR
-        return total + cost > self.budget
 
 
 def _renders(step: Sequence[Result]) -> list[float]:
@@ -198,7 +199,7 @@ class Runner:
         if cell.steps:
             cell.decision = self._decide(cell.results)
         if cell.wants_more:
-            urgency = cell.next_seconds * (SLOPE_CAN_WAIT if cell.decision.decided else 1)
+            urgency = cell.next_seconds * (1 if cell.decidable else SLOPE_CAN_WAIT)
             heapq.heappush(self._queue, (urgency, list(self._spent).index(cell.name), cell))
 
     @property
