@@ -17,6 +17,7 @@ from lightproof.certify.polygon import Parts, clip, convex_parts, lambert, visib
 from lightproof.scene import AreaLight, Scene
 
 Shape = geometry.Shape
+ROUNDING = exact(1e-15)  # of a corner's coordinates: how far above a plane a corner counts as lying on it
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,8 @@ def _lies_on(shape: Shape, plane: Plane) -> bool:
     if not isinstance(shape, geometry.Polygon):
         return False
     corners = [point(corner) for corner in shape.vertices]
-    size = max(max(axis) - min(axis) for axis in zip(*corners, strict=True))
-    slack = (exact(geometry.PLANARITY) * size) ** 2 * dot(plane.normal, plane.normal)
+    largest = max(abs(number) for corner in corners for number in corner)
+    slack = (ROUNDING * largest) ** 2 * dot(plane.normal, plane.normal)
     return all((height := plane.height(corner)) <= 0 or height * height <= slack for corner in corners)
 
 
