@@ -54,7 +54,7 @@ class Pyrender(Method):
             return "pyrender has no interreflection, and its point lights cast no shadows"
         if isinstance(scene.film, CameraFilm):
             return "pyrender draws no light sources"
-        return views.unsupported(scene)
+        return views.unsupported(scene) or _stretched(scene)
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()
@@ -127,6 +127,12 @@ class Pyrender(Method):
         away = DISTANCE * float(max(view.half))
         camera = self.pyrender.OrthographicCamera(*view.half, znear=away / 2, zfar=2 * away)
         stage.add(camera, pose=views.pose(view.target - away * forward, right, up, -forward))
+
+
+def _stretched(scene: Scene) -> str | None:
+    """pyrender widens an orthographic view until its pixels are square."""
+    square = all(view.has_square_pixels for view in views.views(scene))
+    return None if square else "pyrender's pixels are square, and this film's cells are not"
 
 
 def _linear(codes: np.ndarray) -> np.ndarray:

@@ -48,6 +48,12 @@ class View:
     near: float
     receiver: Receiver | None = None
 
+    @property
+    def has_square_pixels(self) -> bool:
+        """Whether a pixel is as wide as high, to a part in 10^6."""
+        (width, height), (columns, rows) = self.half, self.resolution
+        return abs(width * rows - height * columns) <= 1e-6 * width * rows
+
     def elements(self, radiance: np.ndarray) -> np.ndarray:
         """Film elements (n,) from the camera's image (rows, columns) of radiance."""
         if self.receiver is None:

@@ -18,7 +18,7 @@ from lightproof.reporting import framing
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, Light, PlaneFilm, PointLight, PointsFilm, Scene, Surface
 
 LAMP, LAMP_BACK = (0.99, 0.93, 0.72), (0.95, 0.80, 0.42)
-BLOCKER, RIM, SKY, SKY_OFF = (0.16, 0.20, 0.28), (0.42, 0.47, 0.55), (0.7, 0.9, 1.2), (0.4, 0.5, 0.6)
+BLOCKER, RIM, SKY, SKY_OFF = (0.16, 0.20, 0.28), (0.42, 0.47, 0.55), (0.55, 0.85, 1.35), (0.4, 0.5, 0.6)
 CELLS = (0.64, 0.65, 0.67), (0.50, 0.52, 0.55)
 WARM = (1.0, 0.93, 0.77)
 INK, DOT = (0.13, 0.27, 0.58), (0.80, 0.16, 0.14)
