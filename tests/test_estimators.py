@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from numba import njit, typeof
-from scipy import stats
+from scipy import integrate, stats
 
 from lightproof import suite
 from lightproof.estimators import mc_area
@@ -373,3 +373,13 @@ def test_block_is_where_precision_changes():
     made = method("mc-area/float64", UNDER_CORNER)
     less, more = (made.render(n, 5).film[0] * n for n in (mc_area.BLOCK, mc_area.BLOCK + 1))
     assert 0 < more - less < 5 * EXACT["rectangle"][1]
+
+
+def test_analytic_light_that_grazes_keeps_its_digits():
+    """A square 1e-5 m above the receiver's plane, beside it, where Lambert's sum cancels, and one 11 cm above:
+    cos cos / r^2 integrated by scipy."""
+    for height in (1e-5, 0.11):
+        one = scene([area_light(rectangle(-0.39, -0.73, 1.04, 1.04, height), 1.0)], at_points([[1.125, 0.675, 0]]))
+        bounds = (-0.39 - 1.125, 0.65 - 1.125, -0.73 - 0.675, 0.31 - 0.675)
+        exact, _ = integrate.dblquad(lambda y, x, h=height: h**2 / (x**2 + y**2 + h**2) ** 2, *bounds, epsabs=0, epsrel=1e-13)
+        assert method("analytic", one).render(1, 0).film[0] == pytest.approx(exact, rel=1e-11)

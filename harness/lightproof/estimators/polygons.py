@@ -19,8 +19,8 @@ VERTICES = 24  # room for a polygon: each clip adds at most one vertex
 ORDER = 10  # Gauss-Legendre nodes along a side of a small triangle
 NODES, WEIGHTS = ((1 + np.polynomial.legendre.leggauss(ORDER)[0]) / 2, np.polynomial.legendre.leggauss(ORDER)[1] / 2)
 CORNERS = np.array([[[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]], [[0, 0], [1, 0], [0, 1], [0, 0]]])  # s, t by kind
-CANCELLED = 1e-2  # Lambert's sum below this share of its terms has lost digits
-MOST_CELLS = 64  # along a triangle's side, for light that grazes
+CANCELLED = 1e-3  # Lambert's sum below this share of its terms has lost three digits
+MOST_CELLS = 16  # half of the most along a triangle's side, for light that grazes
 
 
 @strict
@@ -87,8 +87,9 @@ def by_area(polygon, count):
 def triangle_by_area(a, b, c):
     """Gauss-Legendre over a triangle cut into cells shorter than half their distance."""
     u, v = sub(b, a), sub(c, a)
-    nearest = max(min(norm(a), norm(b), norm(c)) - max(norm(u), norm(v)) / 2, 1e-300)
-    cells = int(min(max(1.0, math.ceil(2 * max(norm(u), norm(v)) / nearest)), MOST_CELLS))
+    longest = max(norm(u), norm(v))
+    nearest = max(min(norm(a), norm(b), norm(c)) - longest / 2, longest / MOST_CELLS)
+    cells = int(1 + 2 * longest / nearest)
     normal = cross(u, v)
     total = 0.0
     for i in range(cells * ORDER):
