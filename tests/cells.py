@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lightproof import suite
-from lightproof.reference import Reference
+from lightproof.references import Reference
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status, Trial
 

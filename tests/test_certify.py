@@ -15,7 +15,7 @@ from lightproof import scene_file, suite
 from lightproof.certify import admission, quadrature
 from lightproof.certify.balls import PRECISION, CannotCertify, root
 from lightproof.certify.engine import certify
-from lightproof.reference import read
+from lightproof.references import read
 
 SECOND = suite.default().root / "references"
 RECTANGLE = [[-0.4, -0.7, 1.3], [-0.4, 0.3, 1.3], [0.6, 0.3, 1.3], [0.6, -0.7, 1.3]]

@@ -14,7 +14,7 @@ LAYERS = [
     {"radiometry", "geometry", "statistics"},
     {"scene"},
     {"scene_file"},
-    {"trial", "reference", "films", "method", "sketch"},
+    {"trial", "references", "films", "method", "sketch"},
     {"suite", "certify", "estimators"},
     {"renderers"},
     {"store", "diagnose", "ladder"},
@@ -62,5 +62,5 @@ def test_the_judged_never_see_a_reference():
     """Estimators, renderers and the runner load no reference; the reference engine imports no estimator."""
     imported = modules()
     for judged in ("estimators", "renderers", "runner", "method", "films", "trial"):
-        assert not imported[judged] & {"reference", "suite", "certify", "verdict", "reporting"}, judged
-    assert imported["certify"] <= {"checked", "geometry", "scene", "scene_file", "radiometry", "reference", "suite"}
+        assert not imported[judged] & {"references", "suite", "certify", "verdict", "reporting"}, judged
+    assert imported["certify"] <= {"checked", "geometry", "scene", "scene_file", "radiometry", "references", "suite"}

@@ -8,7 +8,7 @@ import pytest
 
 from lightproof import suite
 from lightproof.checked import SceneError
-from lightproof.reference import ReferenceError
+from lightproof.references import ReferenceError
 
 TWELVE = {"disk-blocker", "disk-light", "knife-edge", "occluded-square", "off-centre-point-in-sphere", "point-light",
           "sphere-furnace", "sphere-light", "square-light", "square-light-seen", "triangle-light", "white-furnace-plane"}

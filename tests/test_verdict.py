@@ -13,7 +13,7 @@ import pytest
 from cells import LIGHT, SCENE, error, noisy, reference, results, trial
 
 from lightproof import ladder, suite, verdict
-from lightproof.reference import Reference
+from lightproof.references import Reference
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status
 from lightproof.verdict import Outcome, Verdict

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lightproof import suite, verdict
-from lightproof.reference import Reference
+from lightproof.references import Reference
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS
 from lightproof.scene import Scene

@@ -13,7 +13,7 @@ from pathlib import Path
 from lightproof import baseline, ladder, plan, statistics, store
 from lightproof.baseline import Key, State
 from lightproof.judging import Judge
-from lightproof.reference import Reference
+from lightproof.references import Reference
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS, Entry
 from lightproof.runner import FACTOR, Cell, Progress, Runner

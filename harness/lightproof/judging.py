@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from lightproof import ladder, suite, verdict
-from lightproof.reference import Reference, ReferenceError
+from lightproof.references import Reference, ReferenceError
 from lightproof.runner import Decision
 from lightproof.scene import Scene
 from lightproof.store import Store

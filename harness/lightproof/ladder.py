@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from lightproof import statistics
-from lightproof.reference import Reference
+from lightproof.references import Reference
 from lightproof.scene import Scene
 from lightproof.statistics import TILES
 from lightproof.trial import Result, Status

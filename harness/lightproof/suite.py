@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from lightproof import reference, scene_file
+from lightproof import references, scene_file
 from lightproof.checked import SceneError, shown
-from lightproof.reference import Reference
+from lightproof.references import Reference
 from lightproof.scene import Scene
 
 
@@ -44,7 +44,7 @@ class Suite:
 
     def reference(self, scene: Scene) -> Reference:
         """The exact light of a scene. Raises ReferenceError where it is missing, stale or broken."""
-        return reference.read(self.root / "references", scene)
+        return references.read(self.root / "references", scene)
 
 
 def pick(cases: dict[str, Scene], case: str) -> Scene:

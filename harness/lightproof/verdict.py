@@ -10,7 +10,7 @@ import numpy as np
 from lightproof import diagnose, ladder
 from lightproof.finding import Finding, Outcome, find
 from lightproof.ladder import Rung
-from lightproof.reference import Reference
+from lightproof.references import Reference
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status, Trial
 

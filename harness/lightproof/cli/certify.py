@@ -14,7 +14,7 @@ from lightproof.certify import admission
 from lightproof.certify.admission import Admitted
 from lightproof.certify.balls import CannotCertify
 from lightproof.cli.status import DONE, FAILED, INCOMPLETE, UsageError, unknown
-from lightproof.reference import ReferenceError
+from lightproof.references import ReferenceError
 from lightproof.scene import Scene
 from lightproof.suite import Suite
 

@@ -11,7 +11,7 @@ from rich.markup import escape
 from lightproof import machine, suite
 from lightproof.cli import selection
 from lightproof.cli.status import DONE, INCOMPLETE
-from lightproof.reference import ReferenceError
+from lightproof.references import ReferenceError
 from lightproof.renderers.doctor import SAMPLES, Examination, examine
 from lightproof.trial import Status
 

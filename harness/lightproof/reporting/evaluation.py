@@ -9,7 +9,7 @@ import numpy as np
 
 from lightproof import ladder, statistics
 from lightproof.judging import Judge
-from lightproof.reference import Reference
+from lightproof.references import Reference
 from lightproof.renderers.registry import METHODS
 from lightproof.scene import Scene
 from lightproof.store import Run, Store

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from lightproof.radiometry import QUANTITIES, Quantity
-from lightproof.reference import Reference
+from lightproof.references import Reference
 from lightproof.reporting import charts, wording
 from lightproof.reporting.citations import Citation
 from lightproof.reporting.colours import LIGHT, SIGNED, ColourMap, film_image
