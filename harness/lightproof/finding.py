@@ -66,7 +66,8 @@ def _find_noiseless(rung: Rung, before: Rung | None) -> Finding:
         return Finding(Outcome.FAIL, f"{_accusation(rung, confirmed)} at two steps")
     converging = before is not None and rung.votes.any()
     doubt = f"still converging: {_accusation(rung, rung.votes)}" if converging else _doubt(rung)
-    return Finding(Outcome.UNDECIDED, doubt, ladder.FACTOR * rung.samples)
+    blurred = (rung.uncertainty >= rung.tolerance).any()
+    return Finding(Outcome.UNDECIDED, doubt, None if blurred else ladder.FACTOR * rung.samples)
 
 
 def _find_noisy(rung: Rung, before: Rung | None) -> Finding:

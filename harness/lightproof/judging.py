@@ -42,7 +42,9 @@ class Judge:
     def __init__(self, record: Store, suite: Suite | None = None):
         self._scenes = {(scene.id, scene.case): scene for scene in record.scenes}
         self._suite = suite or homes(record)
-        self._triples = max(ladder.TRIPLES, len(record.scenes) * len(record.run.options.get("methods", ())))
+        options = record.run.options
+        self._rule = {"triples": max(ladder.TRIPLES, len(record.scenes) * len(options.get("methods", ()))),
+                      "replicates": options.get("replicates", 2)}
         self._known = cache(self._look_up)
 
     def scene(self, results: Sequence[Result]) -> Scene:
@@ -57,7 +59,7 @@ class Judge:
         """The verdict of one method on one scene from all its results; where its light is not known, the reason says why."""
         scene = self.scene(results)
         reference, missing = self._known(scene)
-        judged = verdict.judge(results, reference, scene, triples=self._triples)
+        judged = verdict.judge(results, reference, scene, **self._rule)
         return replace(judged, reason=missing) if judged.outcome is Outcome.NO_REFERENCE else judged
 
     def decide(self, results: Sequence[Result]) -> Decision:

@@ -241,18 +241,18 @@ class Rung:
         return bool((np.abs(self.errors[0] - before.errors[0]) <= SAME_FILM).all())
 
 
-def climb(results: Sequence[Result], scene: Scene, scale: Scale, triples: int = TRIPLES) -> list[Rung]:
+def climb(results: Sequence[Result], scene: Scene, scale: Scale, triples: int = TRIPLES, replicates: int = 2) -> list[Rung]:
     """The steps of one method on one scene, by samples asked for. A whole step has as many films as any step had trials, and
-    at least two unless the method declares that it has no noise (then one is enough)."""
+    at least `replicates`, unless the method declares that it has no noise (then one is enough)."""
     steps: dict[int, list[Result]] = {}
     for result in results:
         if result.status is Status.OK:
             steps.setdefault(result.trial.samples, []).append(result)
     tile_level = TILE_LEVEL * min(1.0, np.sqrt(TRIPLES / triples))
-    fullest = max(Counter(result.trial.samples for result in results).values(), default=0)
+    fullest = max([replicates, *Counter(result.trial.samples for result in results).values()])
     return [_rung(samples, steps[samples], fullest, scale, scene.tolerance, tile_level) for samples in sorted(steps)]
 
 
 def _rung(samples: int, results: list[Result], fullest: int, scale: Scale, tolerance: float, tile_level: float) -> Rung:
-    whole = 1 if results[0].deterministic else max(fullest, 2)
+    whole = 1 if results[0].deterministic else fullest
     return Rung(samples, tuple(results), whole, scale, tolerance, tile_level)

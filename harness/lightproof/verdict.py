@@ -52,13 +52,14 @@ class Verdict:
     biased: bool = False
 
 
-def judge(results: Sequence[Result], reference: Reference | None, scene: Scene, *, triples: int = ladder.TRIPLES) -> Verdict:
+def judge(results: Sequence[Result], reference: Reference | None, scene: Scene, *,
+          triples: int = ladder.TRIPLES, replicates: int = 2) -> Verdict:
     """The verdict of one method on one scene from all its results, in any order.
 
-    `triples` is how many (scene, case, method) the suite holds: more than 1,600 widen the tiles' intervals. What a method
-    says of itself comes first: `unsupported`, whatever else there is; then an `error`, where it leaves no step that decides
-    (with or without a reference: it is the renderer's); then `no-reference`. A trial repeated after an error counts once.
-    Raises ValueError where the results belong to several methods.
+    `triples` is how many (scene, case, method) the suite holds: more than 1,600 widen the tiles' intervals. A step with fewer
+    films than `replicates` is not judged. What a method says of itself comes first: `unsupported`, whatever else there is;
+    then an `error`, where it leaves no step that decides (with or without a reference: it is the renderer's); then
+    `no-reference`. A trial repeated after an error counts once. Raises ValueError where the results belong to several methods.
     """
     if len({result.trial.method for result in results}) > 1:
         raise ValueError("these results belong to several methods; judge one at a time")
@@ -70,7 +71,7 @@ def judge(results: Sequence[Result], reference: Reference | None, scene: Scene, 
         scale = ladder.scale(scene, reference)
     except ValueError as error:
         return Verdict(Outcome.ERROR, str(error), scene.tolerance)
-    rungs = ladder.climb(results, scene, scale, triples)
+    rungs = ladder.climb(results, scene, scale, triples, replicates)
     findings = [find(rung, _before(rung, rungs)) for rung in rungs]
     final = _final(rungs, findings, _with(Status.ERROR, results))
     steps = tuple(_step(rung, finding) for rung, finding in zip(rungs, findings, strict=True))
