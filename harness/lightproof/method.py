@@ -36,12 +36,13 @@ class Method(ABC):
     """One way to fill a film.
 
     `deterministic`: the film does not depend on the seed. `samples_lights`: every sample is aimed at a light, so a black
-    tile is a statement and not bad luck. `precision`: of the arithmetic or of the output, whichever is coarser.
+    tile is a statement and not bad luck. `precision`: of the arithmetic or of the output, whichever is coarser; it may depend
+    on the scene and is asked for after `prepare`.
     """
 
     deterministic: ClassVar[bool] = False
     samples_lights: ClassVar[bool] = True
-    precision: ClassVar[str] = "float32"
+    precision: str = "float32"
 
     def __init__(self, name: str, threads: int):
         """`name` is the full method name, options included: mitsuba/scalar."""
@@ -62,6 +63,10 @@ class Method(ABC):
     @abstractmethod
     def unsupported(self, scene: Scene) -> str | None:
         """Why this method cannot do this scene, in words such as "pyrender has no area lights"; None where it can."""
+
+    def caveat(self, scene: Scene) -> str:
+        """What is known to be wrong with this renderer on this scene, in a sentence for the reader of a verdict; else empty."""
+        return ""
 
     @abstractmethod
     def prepare(self, scene: Scene) -> Mapping[str, float]:

@@ -64,3 +64,4 @@ class Result:
     threads: int = 1
     peak_memory_mb: float = 0.0
     message: str = ""
+    caveat: str = ""

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from lightproof.geometry import Sphere
 from lightproof.method import Method, Rendering
 from lightproof.renderers import importing, mitsuba_shapes, transport, views
 from lightproof.renderers.views import View
@@ -55,6 +56,13 @@ class Mitsuba(Method):
             if not isinstance(light, AreaLight | PointLight | DirectionalLight | Environment):
                 return "Mitsuba is not given sun discs or overcast skies yet"
         return transport.unsupported(scene) or views.unsupported(scene)
+
+    def caveat(self, scene: Scene) -> str:
+        inward = [surface for surface in scene.surfaces if surface.radiance and surface.side == "inside"]
+        if self.integrator["type"] == "path" and any(isinstance(surface.shape, Sphere) for surface in inward):
+            return ("Mitsuba's multiple importance sampling is biased inside an analytic sphere that emits: emitter sampling"
+                    " alone and BSDF sampling alone are right, their combination is too bright, more so far from the origin.")
+        return ""
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()

@@ -34,19 +34,20 @@ class About:
     """What an opened method says of itself; see `method.Method`."""
 
     version: str
-    precision: str
     deterministic: bool
     samples_lights: bool
 
 
 @dataclass(frozen=True)
 class Preparation:
-    """The scene that a method has prepared, with what it took [s] and how the method is set."""
+    """The scene that a method has prepared, what it took [s], and how the method is set; see `method.Method`."""
 
     scene: str
     digest: str
     seconds: Mapping[str, float] = field(default_factory=dict)
     settings: Mapping[str, Any] = field(default_factory=dict)
+    precision: str = ""
+    caveat: str = ""
 
 
 class Pool:
@@ -130,7 +131,8 @@ class Pool:
             seconds={**prepared.seconds, **answer["seconds"]},
             version=about.version,
             settings=prepared.settings,
-            precision=about.precision,
+            precision=prepared.precision,
+            caveat=prepared.caveat,
             deterministic=about.deterministic,
             samples_lights=about.samples_lights,
             threads=self.threads,

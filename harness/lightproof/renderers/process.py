@@ -78,12 +78,13 @@ class Worker:
     def _answer(self, timeout: float) -> dict[str, Any]:
         deadline = time.monotonic() + timeout
         while b"\n" not in self._buffer:
-            if select.select([self._answers], [], [], POLL)[0]:
+            left = deadline - time.monotonic()
+            if left < 0:
+                raise WorkerTimeout(f"no answer within {timeout:.3g} s{self._last_words()}")
+            if select.select([self._answers], [], [], min(POLL, left))[0]:
                 self._read()
             elif self._process.poll() is not None:
                 raise WorkerDied(f"{self._ending()}{self._last_words()}")
-            elif time.monotonic() > deadline:
-                raise WorkerTimeout(f"no answer within {timeout:.3g} s{self._last_words()}")
         line, _, self._buffer = self._buffer.partition(b"\n")
         try:
             return json.loads(line)

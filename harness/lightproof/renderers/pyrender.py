@@ -44,6 +44,12 @@ class Pyrender(Method):
         return {"material": "white, roughness 1, taken for Lambertian", "gamma": "undone", "bits": 8,
                 "exposure": f"brightest pixel at {BRIGHT} of full scale"}
 
+    def caveat(self, scene: Scene) -> str:
+        if all(isinstance(light, Environment) for light in scene.lights):
+            return "pyrender's picture has 8 bits: a finer tolerance than half a step of them cannot be decided."
+        return ("pyrender's material is not Lambertian: a Fresnel term takes 4 % at normal incidence, a glossy lobe adds light"
+                " at grazing angles; and its picture has 8 bits.")
+
     def unsupported(self, scene: Scene) -> str | None:
         for light in scene.lights:
             if not isinstance(light, PointLight | DirectionalLight | Environment):

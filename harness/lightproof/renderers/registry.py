@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+OURS = "lightproof"  # the process of the in-house estimators
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -17,7 +19,7 @@ class Entry:
 
 
 def _ours(name: str, target: str, nightly: bool = False) -> Entry:
-    return Entry(name, f"lightproof.estimators.{target}", worker="lightproof", nightly=nightly)
+    return Entry(name, f"lightproof.estimators.{target}", worker=OURS, nightly=nightly)
 
 
 METHODS = {

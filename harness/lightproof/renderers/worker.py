@@ -59,13 +59,12 @@ class Host:
         self._methods[method] = opened
         return {
             "version": opened.version(),
-            "precision": opened.precision,
             "deterministic": opened.deterministic,
             "samples_lights": opened.samples_lights,
         }
 
     def prepare(self, method: str, scene_id: str, case: str, table: dict[str, Any]) -> dict[str, Any]:
-        """Seconds and settings of a prepared scene, or why it is unsupported."""
+        """What there is to say of a prepared scene, or why it is unsupported."""
         scene, opened = scene_file.from_table(table, scene_id, case), self._methods[method]
         reason = opened.unsupported(scene)
         if reason is not None:
@@ -74,7 +73,8 @@ class Host:
         named = opened.prepare(scene)
         seconds = phases(named, time.perf_counter() - start, rest="setup")
         self._scenes[method] = scene
-        return {"seconds": seconds, "settings": dict(opened.settings())}
+        return {"seconds": seconds, "settings": dict(opened.settings()), "precision": opened.precision,
+                "caveat": opened.caveat(scene)}
 
     def render(self, method: str, samples: int, seed: int, film: str) -> dict[str, Any]:
         """One film of the prepared scene, written to the path `film`."""

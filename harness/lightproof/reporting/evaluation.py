@@ -10,7 +10,7 @@ import numpy as np
 from lightproof import ladder, statistics
 from lightproof.judging import Judge
 from lightproof.references import Reference
-from lightproof.renderers.registry import METHODS
+from lightproof.renderers.registry import METHODS, OURS
 from lightproof.scene import Scene
 from lightproof.store import Run, Store
 from lightproof.suite import Suite
@@ -41,6 +41,11 @@ class Cell:
     def step(self) -> Step | None:
         """What was found at the last complete step; None where nothing could be judged."""
         return next((step for step in self.verdict.steps if self.final and step.samples == self.final[0].trial.samples), None)
+
+    @property
+    def caveat(self) -> str:
+        """What the method itself knows to be wrong with its renderer on this scene."""
+        return self.results[0].caveat
 
     @cached_property
     def film(self) -> np.ndarray:
@@ -104,7 +109,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Every cell that a run has begun, scene by scene in the run's order, methods in the registry's."""
+    """Every cell that a run has begun, scene by scene in the run's order; for the order of methods see `_rank`."""
 
     run: Run
     scenes: tuple[Scene, ...]
@@ -112,7 +117,7 @@ class Evaluation:
 
     @cached_property
     def methods(self) -> list[str]:
-        """Each method once, the registry's first."""
+        """Each method once."""
         return sorted({cell.method for cell in self.cells}, key=_rank)
 
     def cell(self, scene: Scene, method: str) -> Cell | None:
@@ -124,9 +129,11 @@ class Evaluation:
         return {(cell.scene.name, cell.method): cell for cell in self.cells}
 
 
-def _rank(method: str) -> tuple[int, str]:
-    names = list(METHODS)
-    return (names.index(method) if method in METHODS else len(names), method)
+def _rank(method: str) -> tuple[int, int, str]:
+    """A reader's own methods first, then renderers, then ours, in the registry's order: renderers are what is asked about."""
+    if method not in METHODS:
+        return 0, 0, method
+    return (2 if METHODS[method].worker == OURS else 1), list(METHODS).index(method), method
 
 
 def evaluate(record: Store, suite: Suite) -> Evaluation:
