@@ -43,7 +43,8 @@ def test_the_first_two_commands_are_the_ones_that_do_everything():
 @pytest.mark.parametrize("command", commands("lightproof"))
 def test_commands_run_as_written(command, folder):
     """In the README's order: the page is that of the run before it."""
-    run = subprocess.run([sys.executable, "-m", "lightproof.cli", *shlex.split(command)[1:]], cwd=folder, capture_output=True, text=True)
+    run = subprocess.run([sys.executable, "-m", "lightproof.cli", *shlex.split(command)[1:]], cwd=folder,
+                         capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
 
 

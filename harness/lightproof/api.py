@@ -40,9 +40,11 @@ def render(scene: Scene | str, method: str = "mc-area", samples: int = 1024, rep
     """A film (rows, columns) of a scene in the film's unit, or `replicates` of them (R, rows, columns) with independent seeds,
     at `samples` per element; rendered in a process of its own on `threads` (default: all cores).
 
-    Raises KeyError on an unknown method, RenderError where it cannot do the scene or fails, SceneError.
+    Raises ValueError on an unknown method, RenderError where it cannot do the scene or fails, SceneError.
     """
     scene, _ = _found(scene)
+    if method not in METHODS:
+        raise ValueError(f"there is no method {method!r}; give one of {', '.join(METHODS)}")
     with tempfile.TemporaryDirectory() as folder, Pool(threads or os.cpu_count() or 1) as pool:
         trials = [Trial(scene.id, scene.case, scene.digest, method, samples, number, seed) for number in range(replicates or 1)]
         results = [pool.render(METHODS[method], scene, trial, Path(folder) / "film.exr", math.inf) for trial in trials]

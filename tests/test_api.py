@@ -1,0 +1,74 @@
+"""The calls for a notebook."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import lightproof
+from lightproof.api import RenderError
+
+
+@pytest.fixture(scope="module")
+def exact():
+    return lightproof.reference("square-light").value.reshape(12, 16)
+
+
+def test_load_and_reference_by_name_case_and_path():
+    scene = lightproof.load("square-light:far")
+    assert scene.case == "far"
+    assert lightproof.reference(scene).value.max() < lightproof.reference("square-light").value.max()
+
+
+def test_a_single_right_film_passes_and_a_wrong_one_is_undecided(exact):
+    """One film cannot fail: that needs a second step. An error of 2 % of the largest value is four tolerances."""
+    assert lightproof.judge(exact, "square-light").outcome == "pass"
+    assert lightproof.judge(exact + 0.02 * exact.max(), "square-light").outcome == "undecided"
+
+
+def test_replicates_are_judged_by_their_scatter(exact):
+    random = np.random.default_rng(1)
+    films = exact + random.normal(0, 1e-3 * exact.max(), (16, *exact.shape))
+    assert lightproof.judge(films, "square-light").outcome == "pass"
+
+
+def test_a_ladder_confirms_a_fail_and_names_the_mistake(exact):
+    """Radiosity taken for radiance: pi times too bright at two steps, and that is what the reason says."""
+    random = np.random.default_rng(2)
+    ladder = {samples: np.pi * exact + random.normal(0, 0.01 / np.sqrt(samples), (16, *exact.shape)) for samples in (64, 256)}
+    verdict = lightproof.judge(ladder, "square-light")
+    assert verdict.outcome == "fail" and "pi" in verdict.reason
+
+
+def test_films_of_the_wrong_shape_are_refused(exact):
+    with pytest.raises(ValueError, match=r"\(12, 16\)"):
+        lightproof.judge(exact.T, "square-light")
+    with pytest.raises(ValueError, match=r"\(12, 16\)"):
+        lightproof.judge(exact.ravel(), "square-light")
+
+
+def test_render_one_film_and_replicates(exact):
+    one = lightproof.render("square-light", "mc-area", samples=4096, threads=1)
+    several = lightproof.render("square-light", "mc-area", samples=4096, replicates=2, threads=1)
+    assert one.shape == (12, 16) and several.shape == (2, 12, 16)
+    np.testing.assert_array_equal(one, several[0])
+    assert (several[0] != several[1]).any()
+    np.testing.assert_allclose(one, exact, atol=0.02 * exact.max())
+
+
+def test_render_says_what_a_method_cannot_do():
+    with pytest.raises(RenderError, match="pyrender has no area lights"):
+        lightproof.render("square-light", "pyrender")
+    with pytest.raises(ValueError, match="mc-area"):
+        lightproof.render("square-light", "magic")
+
+
+def test_importing_the_package_loads_neither_reference_nor_judge():
+    """A worker imports the package; the judge and the judged share nothing but the scene."""
+    code = "import sys, lightproof.renderers.worker; print([m for m in sys.modules if m.startswith('lightproof')])"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    for module in ("references", "suite", "verdict", "certify", "api", "judging"):
+        assert f"'lightproof.{module}" not in loaded
