@@ -113,6 +113,7 @@ BROKEN = {
     "bad id": ('id = "block"', 'id = "<b>Block"', ["surface", "hyphens"]),
     "no film": ("[film]", "[[film]]", ["film", "not a table"]),
     "not TOML": ("[film]", "[film", ["not TOML"]),
+    "case called base": ("[film]", '[cases.base]\nmax_bounces = 3\n[film]', ["cases.base", "another name"]),
     "unknown case path": ("[film]", '[cases.x]\n"light.lump.radiance" = 3\n[film]', ["cases.x", "lump"]),
 }
 

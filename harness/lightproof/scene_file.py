@@ -38,7 +38,8 @@ def read_cases(path: Path) -> dict[str, Scene]:
 
 def _read_case(table: dict[str, Any], name: str, case: str, changes: Any) -> Scene:
     try:
-        checked.to_kebab(case)
+        if checked.to_kebab(case) == BASE:
+            raise SceneError("", "is what the file itself is called; give the case another name")
         if not isinstance(changes, dict):
             raise SceneError("", "give a table of fields to replace")
         return from_table(_replaced(table, changes), name, case)
