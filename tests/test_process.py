@@ -215,3 +215,9 @@ def test_a_closed_worker_can_be_closed_again():
 def test_phases_add_up_to_the_clock():
     """Of 5 s a method names 2 s of compiling: 3 s are rendering; its own claim about rendering counts for nothing."""
     assert phases({"compile": 2.0, "render": 0.1}, 5.0, rest="render") == {"compile": 2.0, "render": 3.0}
+
+
+@pytest.mark.parametrize(("claimed", "believed"), [(1e9, 5.0), (-1e9, 0.0), (float("nan"), 0.0), (float("inf"), 5.0)])
+def test_a_phase_is_no_longer_than_the_clock_says(claimed, believed):
+    """Of 5 s a method claims too much, less than nothing, or no number: no other method's share of the budget depends on it."""
+    assert phases({"setup": claimed}, 5.0, rest="render") == {"setup": believed, "render": 5.0 - believed}

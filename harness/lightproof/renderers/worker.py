@@ -89,8 +89,8 @@ class Host:
 
 
 def phases(named: Mapping[str, float], elapsed: float, rest: str) -> dict[str, float]:
-    """Seconds by phase: those that the method names, and the rest of what the clock says."""
-    others = {phase: float(seconds) for phase, seconds in (named or {}).items() if phase != rest}
+    """Seconds by phase: those that the method names, which cannot be more than the clock says, and the rest of that."""
+    others = {phase: min(max(0.0, float(seconds)), elapsed) for phase, seconds in (named or {}).items() if phase != rest}
     return {**others, rest: max(0.0, elapsed - sum(others.values()))}
 
 
