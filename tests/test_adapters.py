@@ -11,7 +11,7 @@ import one_process
 import pytest
 from one_process import Shot
 
-from lightproof import geometry, suite
+from lightproof import geometry, scene_file, suite
 from lightproof.geometry import Cylinder, Disk, Polygon, Sphere
 from lightproof.method import Unavailable
 from lightproof.renderers import importing, mesh, mitsuba, transport, views
@@ -150,6 +150,19 @@ def test_seeds_and_samples(method: str, tmp_path: Path):
     first, again, other = one_process.render(method, [Shot(scene, 100, seed) for seed in (7, 7, 8)], tmp_path)
     assert first["film"] == again["film"] != other["film"]
     assert first["samples"] == 100
+
+
+@pytest.mark.parametrize("method", ["mitsuba", "cycles"])
+def test_a_lamp_hides_what_glows_behind_it(method: str, tmp_path: Path):
+    """A disk lamp of 3.7 W/(m2 sr), half-way below a glowing disk of 1.9, seen from their axis: E = pi L R^2/(R^2 + h^2) for
+    each, and of the upper one what the lamp covers is missing."""
+    near, far = ({"type": "disk", "center": [0, 0, h], "normal": [0, 0, -1], "radius": r} for h, r in ((0.8, 0.3), (1.6, 0.9)))
+    table = {"title": "Two disks", "max_bounces": 0, "tolerance": 0.01, "light": [{"id": "lamp", "kind": "area", "shape": near,
+             "radiance": 3.7}], "surface": [{"id": "glow", "shape": far, "reflectance": 0, "radiance": 1.9}],
+             "film": {"kind": "points", "quantity": "irradiance", "positions": [[0, 0, 0]], "normals": [[0, 0, 1]]}}  # fmt: skip
+    (answer,) = one_process.render(method, [Shot(scene_file.from_table(table, "two-disks"), 1 << 14)], tmp_path)
+    exact = np.pi * ((3.7 - 1.9) * 0.3**2 / (0.3**2 + 0.8**2) + 1.9 * 0.9**2 / (0.9**2 + 1.6**2))
+    assert answer["film"] == pytest.approx([exact], rel=0.01)
 
 
 def test_mitsuba_averages_passes(tmp_path: Path):

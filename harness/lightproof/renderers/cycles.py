@@ -62,7 +62,8 @@ class Cycles(Method):
         self.bpy.ops.wm.read_factory_settings(use_empty=True)
         camera = isinstance(scene.film, CameraFilm)
         self.bounces = max(transport.reflections(scene, BOUNCES) - camera, 0)
-        self.lamps = len(scene.lights) == 1 and not scene.reflects and not camera
+        alone = len(scene.lights) == 1 and not any(surface.radiance for surface in scene.surfaces)
+        self.lamps = alone and not scene.reflects and not camera
         self.views = views.views(scene)
         world = cycles_scene.world(self.bpy, [light for light in scene.lights if isinstance(light, Environment)])
         contents = self._contents(scene)
