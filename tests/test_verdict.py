@@ -103,7 +103,9 @@ def test_samples_needed_is_the_rule_as_stated():
     tiles = (films / 4).reshape(16, 6, 2, 8, 2).mean(axis=(2, 4)).reshape(16, -1)
     q = -ladder.statistics.stdtrit(15, (1 - (1 - 0.004) ** (1 / 65)) / 2)
     expected = 64 * ((q + 3) * tiles.std(axis=0, ddof=1).max() / (4 * 0.005)) ** 2
-    assert judged({64: films}).samples_needed == int(np.ceil(expected))
+    found = judged({64: films})
+    assert found.samples_needed == int(np.ceil(expected))
+    assert found.reason.endswith(f"; {found.samples_needed:,} samples would decide")
 
 
 def test_a_bias_at_the_tolerance_needs_the_next_step_at_least():

@@ -75,7 +75,7 @@ def judge(results: Sequence[Result], reference: Reference | None, scene: Scene, 
     findings = [find(rung, _before(rung, rungs)) for rung in rungs]
     final = _final(rungs, findings, _with(Status.ERROR, results))
     steps = tuple(_step(rung, finding) for rung, finding in zip(rungs, findings, strict=True))
-    reason = _diagnosed(final, rungs, reference, scene)
+    reason = _reason(final, rungs, reference, scene)
     return Verdict(final.outcome, reason, scene.tolerance, steps, final.samples_needed, final.biased)
 
 
@@ -131,8 +131,11 @@ def _final(rungs: Sequence[Rung], findings: Sequence[Finding], errors: Sequence[
     return _error(errors) if errors and final.outcome is Outcome.UNDECIDED else final
 
 
-def _diagnosed(final: Finding, rungs: Sequence[Rung], reference: Reference, scene: Scene) -> str:
-    """The reason, with the likely mistake behind a failing film where it can be told."""
+def _reason(final: Finding, rungs: Sequence[Rung], reference: Reference, scene: Scene) -> str:
+    """In words, with the samples that would decide an undecided verdict, or the likely mistake behind a failing film, where they
+    can be told."""
+    if final.samples_needed:
+        return f"{final.message}; {final.samples_needed:,} samples would decide"
     if final.outcome is not Outcome.FAIL:
         return final.message
     last = [rung for rung in rungs if rung.complete][-1]
