@@ -208,6 +208,14 @@ def test_a_users_scene_is_judged_by_its_own_suite(root, tmp_path, capsys):
     assert "1 pass" in capsys.readouterr().out
 
 
+def test_a_page_that_cannot_be_written_is_explained(command, capsys):
+    """A folder in the place of results.csv: its path, exit 2."""
+    *_, record = command()
+    (record.folder / "results.csv").mkdir()
+    assert main(["report", str(record.folder)]) == 2
+    assert "results.csv: cannot be written" in capsys.readouterr().err
+
+
 def test_two_scenes_of_one_name_are_refused(root):
     """A user's point-light beside the suite's, and different from it: refused."""
     path = root / "scenes/point-light.toml"

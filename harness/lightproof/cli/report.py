@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lightproof import store
 from lightproof.cli.run import RUNS
-from lightproof.cli.status import DONE
+from lightproof.cli.status import DONE, UsageError
 from lightproof.judging import homes
 from lightproof.suite import Suite
 
@@ -23,7 +23,10 @@ def run(options: argparse.Namespace) -> int:
     record = _find(options.run)
     from lightproof import reporting  # pandas and altair take a second that the other commands need not wait
 
-    print(reporting.write(record.folder, Suite(options.suite) if options.suite else homes(record)))
+    try:
+        print(reporting.write(record.folder, Suite(options.suite) if options.suite else homes(record)))
+    except OSError as error:
+        raise UsageError(f"{error.filename}: cannot be written ({error.strerror}); the page goes into the run's folder") from None
     return DONE
 
 
