@@ -5,8 +5,10 @@ It knows the exact light of scenes/point-light.toml, and adds noise to it unless
 
 from __future__ import annotations
 
+import fcntl
 import os
 import signal
+import stat
 import subprocess
 import sys
 import time
@@ -111,6 +113,19 @@ def _speaks_nonsense(method: Misbehaving, film: np.ndarray) -> np.ndarray:
     return film
 
 
+def _drones_on(method: Misbehaving, film: np.ndarray) -> None:
+    while True:
+        for fd in filter(_is_pipe_to_write, range(3, 64)):
+            os.write(fd, b"light " * 100)
+
+
+def _is_pipe_to_write(fd: int) -> bool:
+    try:
+        return stat.S_ISFIFO(os.fstat(fd).st_mode) and fcntl.fcntl(fd, fcntl.F_GETFL) & os.O_ACCMODE == os.O_WRONLY
+    except OSError:
+        return False
+
+
 def _is_slow(method: Misbehaving, film: np.ndarray) -> np.ndarray:
     time.sleep(0.02)
     return film
@@ -154,6 +169,7 @@ FAULTS = {
     "floods": _floods,
     "closes-pipe": _closes_pipe,
     "speaks-nonsense": _speaks_nonsense,
+    "drones-on": _drones_on,
     "leaves-a-child": _child,
     "writes-half-an-image": _half_an_image,
     "nan": _set(3, np.nan),

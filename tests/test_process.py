@@ -135,6 +135,13 @@ def test_a_renderer_that_hangs_is_killed(pool, render, fault):
     assert render(entry(), replicate=1).status is Status.OK
 
 
+def test_a_renderer_that_never_ends_its_sentence_is_killed(render):
+    """Bytes without end on the harness's pipe, and never a line: no answer in time, like silence."""
+    result = render(entry("drones-on"), timeout=0.5)
+    assert result.message == "while rendering: no answer within 0.5 s; it wrote nothing"
+    assert render(entry(), replicate=1).status is Status.OK
+
+
 def test_a_crash_is_retried_once(render, tmp_path, monkeypatch):
     """A renderer that crashes once: the trial succeeds at the second attempt, and says so."""
     monkeypatch.setenv("MISBEHAVING_FLAG", str(tmp_path / "flag"))
