@@ -232,10 +232,21 @@ def test_round_shadows(radius):
     assert certify(scene_file.from_table(table, "test"), [0, 5]).value == pytest.approx(second, rel=1e-10)
 
 
+def test_a_camera_straight_above_sees_the_film_below_it():
+    """An orthographic camera over a floor of reflectance 0.4: in each pixel 0.4 / pi of what a plane film of the same cells
+    receives, with row 0 on top."""
+    film = PLANE | {"origin": [-0.3, -0.3, 0], "u": [0.6, 0, 0], "v": [0, 0.6, 0], "resolution": [3, 3]}
+    camera = ABOVE | {"origin": [0, 0, 1], "width": 0.6, "up": [0, 1, 0], "resolution": [3, 3]}
+    irradiance = certify(scene([lamp()], film)).value.reshape(3, 3)[::-1]
+    radiance = certify(scene([lamp()], camera, [FLOOR], 1)).value.reshape(3, 3)
+    assert radiance == pytest.approx(0.4 / np.pi * irradiance, rel=1e-14)
+
+
 MIRROR = {"id": "wall", "reflectance": 0.5, "shape": polygon([[1, -1, 0], [1, 1, 0], [1, 1, 1], [1, -1, 1]])}
 FLOOR = {"id": "floor", "reflectance": 0.4, "shape": polygon([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])}
 LOOK = {"kind": "camera", "quantity": "radiance", "projection": "perspective", "target": [0, 0, 0], "up": [0, 0, 1]}
 CAMERA = LOOK | {"origin": [0, -0.5, 1], "fov": 10, "resolution": [2, 2]}
+ABOVE = LOOK | {"projection": "orthographic", "origin": [0, -1, 1], "width": 1, "resolution": [2, 2]}
 BALL = {"id": "ball", "reflectance": 0.5, "shape": {"type": "sphere", "center": [0, 0, 0.6], "radius": 0.1}}
 GLOBE = {"id": "wall", "reflectance": 0.5, "radiance": 1.0, "side": "inside",
          "shape": {"type": "sphere", "center": [0, 0, 0], "radius": 1}}
@@ -247,8 +258,11 @@ GLOBE = {"id": "wall", "reflectance": 0.5, "radiance": 1.0, "side": "inside",
     (([lamp()], FILM, [MIRROR | {"radiance": 1.0}]), "emits light of its own"),
     (([lamp()], CAMERA | {"fov": 120}, [FLOOR], 1), "past the floor"),
     (([lamp()], CAMERA | {"origin": [0, -0.5, 2]}, [FLOOR], 1), "between the camera and the floor"),
+    (([lamp()], ABOVE, [FLOOR], 1), "between the camera and the floor"),
+    (([lamp()], ABOVE | {"origin": [0, -0.2, 0.2]}, [FLOOR], 1), "behind the floor"),
     (([lamp()], at([0.1, 0, 0]), [BALL]), "only polygon blockers"),
     (([], CAMERA | {"origin": [0, 0.1, 1.5]}, [GLOBE]), "does not lie inside"),
+    (([], ABOVE | {"origin": [0, 0.1, 0.5]}, [GLOBE]), "a perspective camera"),
     (([], at([0, 0, 0.5]), [GLOBE]), "no point of the wall"),
     (([lamp()], at([-0.4, -0.9, 1.3], [0, 0, 1])), None),
 ])  # fmt: skip

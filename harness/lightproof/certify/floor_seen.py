@@ -25,7 +25,6 @@ def solve(scene_: Scene) -> Element:
     if floor.radiance > 0:
         raise CannotCertify(f"surface '{floor.id}' emits light of its own; only a floor that reflects is covered")
     camera = Camera.of(scene_.film)
-    _check_lights(scene_, plane, plane.height(camera.origin))
     lights = direct.fields(replace(scene_, surfaces=()), plane) if scene_.max_bounces != 0 else []
     factor = exact(floor.reflectance) / arb.pi()
 
@@ -33,7 +32,9 @@ def solve(scene_: Scene) -> Element:
         def hit(s: Ball, t: Ball) -> Vector:
             return _hit(camera.ray(index, s, t), plane)
 
-        _check_pixel([camera.ray(index, arb(s), arb(t)) for s in (-1, 1) for t in (-1, 1)], plane, corners)
+        rays = [camera.ray(index, arb(s), arb(t)) for s in (-1, 1) for t in (-1, 1)]
+        _check_lights(scene_, plane, [plane.height(start) for start, _ in rays])
+        _check_pixel(rays, plane, corners)
         formulas = _formulas(lights, hit)
         return quadrature.mean(lambda s, t: factor * sum((formula(x) for formula in formulas for x in [hit(s, t)]), arb(0)))
 
@@ -46,14 +47,15 @@ def _floor(scene_: Scene) -> scene.Surface:
     return scene_.surfaces[0]
 
 
-def _check_lights(scene_: Scene, floor: Plane, camera: Ball) -> None:
-    """No ray from the camera down to the floor can meet a light that is nowhere lower than the camera."""
-    if not camera > 0:
+def _check_lights(scene_: Scene, floor: Plane, starts: list[Ball]) -> None:
+    """No ray that goes down to the floor from one of these heights can meet a light that is nowhere lower."""
+    if not all(start > 0 for start in starts):
         raise CannotCertify("the camera is behind the floor")
     for light in scene_.lights:
         if isinstance(light, scene.AreaLight):
             shape = light.shape
-            if not isinstance(shape, geometry.Polygon) or any(floor.height(point(corner)) < camera for corner in shape.vertices):
+            corners = [point(corner) for corner in shape.vertices] if isinstance(shape, geometry.Polygon) else []
+            if not corners or not all(start <= floor.height(corner) for corner in corners for start in starts):
                 raise CannotCertify(f"light '{light.id}' may stand between the camera and the floor")
 
 

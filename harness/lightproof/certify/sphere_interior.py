@@ -27,8 +27,8 @@ def solve(scene_: Scene) -> Element:
     lights = scene_.lights
     if len(lights) + (wall.radiance > 0) != 1 or any(not isinstance(light, scene.PointLight) for light in lights):
         raise CannotCertify("inside a sphere, either the wall glows or there is one point light")
-    if film.quantity not in ("radiance", "irradiance") or isinstance(film, scene.PlaneFilm):
-        raise CannotCertify("inside a sphere, a camera or points on the wall are covered")
+    if isinstance(film, scene.PlaneFilm) or (isinstance(film, scene.CameraFilm) and film.projection == "orthographic"):
+        raise CannotCertify("inside a sphere, a perspective camera or points on the wall are covered")
     inside = [light.position for light in lights]
     if isinstance(film, scene.PointsFilm):
         _check_on_wall(wall.shape, film)
