@@ -64,3 +64,20 @@ def test_a_stale_reference_is_refused(tmp_path):
     file.write_text(file.read_text().replace("2.9", "2.91"))
     with pytest.raises(ReferenceError, match="another version"):
         suite.Suite(tmp_path).reference(suite.Suite(tmp_path).scene("point-light"))
+
+
+@pytest.mark.parametrize(("name", "old", "new"), [
+    ("point-light.toml", 'engine = "certify/direct"', ""), ("point-light.toml", "formula", "formulas"),
+    ("point-light.toml", "[cases.base]", "[cases.base.more]"), ("point-light.toml", "[cases.base]", "[cases.base"),
+    ("point-light.csv", "base,7,", "base,8,"), ("point-light.csv", "base,7,", "base,7,bright"),
+    ("point-light.csv", "base,7,", '"base,7,'), ("point-light.csv", "base,7,", "base,7,nan"), ("point-light.csv", "element", "number"),
+])  # fmt: skip
+def test_a_broken_reference_is_named(tmp_path, name, old, new):
+    """A field renamed, lost or nested too deep, an element twice, a word for a number: the file is named, and what mends it."""
+    root = suite.default().root
+    shutil.copytree(root / "references", tmp_path / "references")
+    broken = tmp_path / "references" / name
+    assert old in broken.read_text()
+    broken.write_text(broken.read_text().replace(old, new, 1))
+    with pytest.raises(ReferenceError, match=rf"{name}: "):
+        suite.Suite(tmp_path).reference(suite.default().scene("point-light"))

@@ -47,14 +47,20 @@ def read(folder: Path, scene: Scene) -> Reference:
     Raises ReferenceError where there is none, where it was made for another version of the scene, or where it is broken.
     """
     path = folder / f"{scene.id}.toml"
-    about = _about(path)
+    try:
+        return _read(path, scene, _about(path))
+    except (AttributeError, KeyError, TypeError) as error:
+        raise ReferenceError(f"{path}: is broken ({error!r}); run 'lightproof certify {scene.id}'") from None
+
+
+def _read(path: Path, scene: Scene, about: dict[str, Any]) -> Reference:
     case = about.get("cases", {}).get(scene.case)
     if case is None:
         raise ReferenceError(f"{path}: no reference for case '{scene.case}'; run 'lightproof certify {scene.id}'")
     if case["scene_digest"] != scene.digest:
         raise ReferenceError(f"{path}: the reference of case '{scene.case}' was made for another version of the scene;"
                              f" run 'lightproof certify {scene.id}'")
-    value, uncertainty = _values(folder / f"{scene.id}.csv", scene)
+    value, uncertainty = _values(path.with_suffix(".csv"), scene)
     return Reference(
         scene_id=scene.id,
         case=scene.case,
@@ -86,7 +92,7 @@ def _values(path: Path, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
             rows = [row for row in csv.DictReader(lines) if row["case"] == scene.case]
         elements = [int(row["element"]) for row in rows]
         numbers = np.array([[float(row["value"]), float(row["uncertainty"])] for row in rows]).reshape(-1, 2)
-    except (OSError, KeyError, TypeError, ValueError) as error:
+    except (OSError, KeyError, TypeError, ValueError, csv.Error) as error:
         raise ReferenceError(f"{path}: cannot be read: {shown(str(error))};"
                              " the columns are case, element, value, uncertainty") from None
     if elements != list(range(scene.size)):
