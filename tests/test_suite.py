@@ -70,7 +70,8 @@ def test_a_stale_reference_is_refused(tmp_path):
     ("point-light.toml", 'engine = "certify/direct"', ""), ("point-light.toml", "formula", "formulas"),
     ("point-light.toml", "[cases.base]", "[cases.base.more]"), ("point-light.toml", "[cases.base]", "[cases.base"),
     ("point-light.csv", "base,7,", "base,8,"), ("point-light.csv", "base,7,", "base,7,bright"),
-    ("point-light.csv", "base,7,", '"base,7,'), ("point-light.csv", "base,7,", "base,7,nan"), ("point-light.csv", "element", "number"),
+    ("point-light.csv", "base,7,", '"base,7,'), ("point-light.csv", "base,7,", "base,7,nan"),
+    ("point-light.csv", "element", "number"),
 ])  # fmt: skip
 def test_a_broken_reference_is_named(tmp_path, name, old, new):
     """A field renamed, lost or nested too deep, an element twice, a word for a number: the file is named, and what mends it."""
