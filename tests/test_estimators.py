@@ -16,7 +16,7 @@ from numba import njit, typeof
 from scipy import integrate, stats
 
 from lightproof import suite
-from lightproof.estimators import mc_area
+from lightproof.estimators import points
 from lightproof.estimators.blockers import visible
 from lightproof.estimators.lamps import lamp
 from lightproof.estimators.shapes import Parallelogram, flat, triangulated
@@ -356,7 +356,8 @@ def test_samples_are_what_was_spent():
     corners = [[0.5 * math.cos(a), -0.5 * math.sin(a), 1] for a in np.arange(6) * math.pi / 3]
     hexagon = scene([area_light({"type": "polygon", "vertices": corners})], at_points([[0, 0, 0]]))
     made = method("mc-area", hexagon)
-    assert made.render(1000, 1).samples == sum(max(1, round(1000 * piece.share)) for piece in made.pieces)
+    assert made.counts(1000) == [250] * 4 and made.render(1000, 1).samples == 1000
+    assert method("mc-cosine", hexagon).render(1000, 1).samples == 1000
     assert method("riemann-area", UNDER_CORNER).render(1000, 1).samples == 32**2
     assert method("mc-area", UNDER_CORNER).render(1, 1).variance is None
 
@@ -371,7 +372,7 @@ def test_triangles_of_a_polygon_cover_it():
 def test_block_is_where_precision_changes():
     """Samples that do not fill the last block are drawn all the same: N and N + 1 around a block's edge differ by one value."""
     made = method("mc-area/float64", UNDER_CORNER)
-    less, more = (made.render(n, 5).film[0] * n for n in (mc_area.BLOCK, mc_area.BLOCK + 1))
+    less, more = (made.render(n, 5).film[0] * n for n in (points.BLOCK, points.BLOCK + 1))
     assert 0 < more - less < 5 * EXACT["rectangle"][1]
 
 

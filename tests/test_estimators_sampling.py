@@ -11,9 +11,10 @@ from scipy import stats
 
 from lightproof.estimators import shapes
 from lightproof.estimators.directions import cosine_power
-from lightproof.estimators.lamps import arriving, lamp, parameters, turn
+from lightproof.estimators.lamps import arriving, lamp, parameters
 from lightproof.estimators.lighting import spot_on_sphere
 from lightproof.estimators.rng import TICK, block_keys, draws, stream, uniform
+from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.world import SPHERE, WIDTH
 
 BLOCKS, BLOCK = 64, 2048

@@ -35,7 +35,7 @@ def emitting_pieces(item: scenes.Light | scenes.Surface) -> list[Flat | Sphere |
 def receiving_planes(scene: Scene) -> list[Plane | None]:
     """The planes that receive: the film's, or of a camera's film those of the surfaces that reflect."""
     if not isinstance(scene.film, CameraFilm):
-        return [elements.flat(scene.film)]
+        return [elements.flat(elements.receivers(scene.film))]
     return [plane_of(piece) for surface in scene.surfaces if surface.reflectance for piece in parts(surface.shape)]
 
 

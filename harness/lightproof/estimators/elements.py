@@ -7,7 +7,7 @@ import numpy as np
 from lightproof import geometry
 from lightproof.scene import PlaneFilm, PointsFilm
 
-CENTER, FRAME, CELL = slice(0, 3), slice(3, 12), slice(12, 15)
+CENTER, NORMAL, CELL = slice(0, 3), slice(9, 12), slice(12, 15)
 
 
 def receivers(film: PlaneFilm | PointsFilm) -> np.ndarray:
@@ -31,9 +31,8 @@ def of_points(film: PointsFilm) -> np.ndarray:
     return np.hstack([np.array(film.positions), np.array(frames), np.zeros((len(frames), 3))])
 
 
-def flat(film: PlaneFilm | PointsFilm) -> tuple[np.ndarray, np.ndarray] | None:
-    """A point and the normal of the plane that the whole film lies in; None where it does not lie in one."""
-    rows = receivers(film)
-    normal, point = rows[0, 9:12], rows[0, CENTER]
-    level = np.abs((rows[:, CENTER] - point) @ normal).max() == 0 and (rows[:, 9:12] == normal).all()
+def flat(receivers: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """A point and the normal of the plane that all receivers lie in; None where they do not lie in one."""
+    normal, point = receivers[0, NORMAL], receivers[0, CENTER]
+    level = np.abs((receivers[:, CENTER] - point) @ normal).max() == 0 and (receivers[:, NORMAL] == normal).all()
     return (point, normal) if level else None

@@ -16,13 +16,11 @@ from numba.extending import overload
 from lightproof import geometry
 from lightproof import scene as scenes
 from lightproof.estimators import shapes
-from lightproof.estimators.compiled import fast
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, placed
+from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.vectors import along, dot, like, scaled, sub, tangents, turned
 from lightproof.geometry import Vec3
-
-TURN_TERMS = {4: 6, 8: 12}  # bytes of a float -> terms of the Taylor series that reach its last digit up to pi/2
 
 
 class Lamp(NamedTuple):
@@ -47,19 +45,23 @@ class Beam(NamedTuple):
 
 
 def lamps(scene: scenes.Scene, reach: float) -> list[tuple[str, Lamp | Point | Beam]]:
-    """Every light of a scene (surfaces that emit are lights) in pieces, each with the light's id; `reach` [m] leads out of
-    the scene."""
-    pieces = []
-    for light in (*scene.lights, *(surface for surface in scene.surfaces if surface.radiance)):
+    """Every light of a scene but skies in pieces, each with the light's id; `reach` [m] leads out of the scene."""
+    pieces = [(owner, lamp(shape, radiance)) for owner, shape, radiance in glowing(scene)]
+    for light in scene.lights:
         match light:
             case scenes.PointLight():
                 pieces.append((light.id, Point(light.position, light.intensity)))
             case scenes.DirectionalLight():
                 back = -reach * geometry.unit(light.direction)
                 pieces.append((light.id, Beam(tuple(back.tolist()), light.irradiance)))
-            case scenes.AreaLight() | scenes.Surface():
-                pieces += [(light.id, lamp(shape, light.radiance)) for shape in shapes.parts(light.shape)]
     return pieces
+
+
+def glowing(scene: scenes.Scene) -> list[tuple[str, Flat | Sphere, float]]:
+    """Id, shape and radiance [W/(m2 sr)] of every piece of every light with an area; surfaces that emit are lights."""
+    lights = [light for light in scene.lights if isinstance(light, scenes.AreaLight)]
+    lights += [surface for surface in scene.surfaces if surface.radiance]
+    return [(light.id, shape, light.radiance) for light in lights for shape in shapes.parts(light.shape)]
 
 
 def lamp(shape: Flat | Sphere, radiance: float) -> Lamp:
@@ -73,7 +75,7 @@ def faced(lamp, origin, frame, model):
 
 @overload(faced)
 def _faced(lamp, origin, frame, model):
-    return FACED[lamp.instance_class]
+    return FACED.get(lamp.instance_class)
 
 
 def _faced_lamp(lamp, origin, frame, model):
@@ -99,7 +101,7 @@ def arriving(lamp, x, s, t):
 def _arriving(lamp, x, s, t):
     if lamp.instance_class is Lamp:
         return _arriving_sphere if lamp.types[0].instance_class is Sphere else _arriving_flat
-    return {Point: _arriving_point, Beam: _arriving_beam}[lamp.instance_class]
+    return {Point: _arriving_point, Beam: _arriving_beam}.get(lamp.instance_class)
 
 
 def _arriving_flat(lamp, x, s, t):
@@ -163,39 +165,3 @@ def _in_circle(shape, s, t):
     radius = math.sqrt(max(s * like(s, TICK) + like(s, 0.5), like(s, 0)))
     sine, cosine = turn(t)
     return radius * cosine, radius * sine
-
-
-@fast
-def turn(t):
-    """sin and cos of 2 pi TICK t, by Taylor series of the half angle: unlike math.sin these run in vector registers."""
-    half = t * like(t, np.pi * TICK)
-    sine, cosine = series(half)
-    return like(t, 2) * sine * cosine, like(t, 1) - like(t, 2) * sine * sine
-
-
-def series(angle):
-    """sin and cos of an angle within a quarter turn, to the last digit of its type."""
-
-
-@overload(series)
-def _series(angle):
-    terms = TURN_TERMS[angle.bitwidth // 8]
-    sine = tuple((-1) ** k / math.factorial(2 * k + 1) for k in reversed(range(terms)))
-    cosine = tuple((-1) ** k / math.factorial(2 * k) for k in reversed(range(terms + 1)))
-
-    def evaluate(angle):
-        square = angle * angle
-        return angle * horner(sine, square), horner(cosine, square)
-
-    return evaluate
-
-
-def horner(coefficients, x):
-    """The polynomial with `coefficients`, highest first, at x."""
-
-
-@overload(horner)
-def _horner(coefficients, x):
-    if len(coefficients) == 1:
-        return lambda coefficients, x: like(x, coefficients[0])
-    return lambda coefficients, x: like(x, coefficients[-1]) + x * horner(coefficients[:-1], x)

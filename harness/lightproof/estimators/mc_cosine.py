@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from lightproof.estimators.mc_hemisphere import McHemisphere
+from lightproof.estimators.meeting import Cosine
 
 
 class McCosine(McHemisphere):
     """As mc-hemisphere, with density cos/pi per solid angle."""
 
-    power = 1
+    density = Cosine

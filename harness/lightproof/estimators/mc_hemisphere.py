@@ -2,25 +2,53 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 
-from lightproof.estimators.directions import estimate
-from lightproof.estimators.estimator import Sampler
+from lightproof.estimators import directions
+from lightproof.estimators.composed import Composed
+from lightproof.estimators.estimator import sampled, variance_of_mean
 from lightproof.estimators.limits import no_bulbs, no_cylinders, no_reflections, no_solid_angle
-from lightproof.estimators.world import build
+from lightproof.estimators.meeting import Cosine, Uniform
+from lightproof.estimators.pieces import Piece, met
+from lightproof.estimators.points import Random
+from lightproof.estimators.views import View, view_from_outside
+from lightproof.method import Rendering
 from lightproof.scene import Scene
 
 
-class McHemisphere(Sampler):
+class McHemisphere(Composed):
     """Any direct light that fills a solid angle."""
 
     samples_lights = False
     limits = (no_cylinders, no_solid_angle, no_reflections, no_bulbs)
-    power = 0
+    density: ClassVar[type[Uniform | Cosine]] = Uniform
 
-    def build(self, scene: Scene) -> None:
-        self.world = build(scene)
+    def seen(self, scene: Scene) -> View | None:
+        return view_from_outside(scene)
 
-    def add(self, first: int, last: int, samples: tuple[int, int], seed: int, out: np.ndarray) -> None:
+    def sources(self, scene: Scene, seen: View) -> list[Piece]:
+        return met(scene, seen, self.density)
+
+    def composed(self, samples: int, seed: int) -> Rendering:
+        """All pieces are looked for in the same directions. A direction meets one of them, so that the values' products
+        vanish: the covariance of two sums over N directions is minus the product of their means over N."""
+        points = Random(samples, seed)
+        sums = np.array([self.view.factor * piece.sums(self.view, points, self.real(1), self.threads) for piece in self.pieces])
+        films = (sums[:, 0] + sums[:, 1]) / samples
+        film = films.sum(axis=0)
+        if samples < 2:
+            return Rendering(film, samples)
+        own = sum(variance_of_mean(totals, self.view.factor * squares, samples) for _, totals, squares in sums)
+        shared = (film**2 - (films**2).sum(axis=0)) / (samples - 1)
+        return Rendering(film, samples, np.maximum(own - shared, 0))
+
+    def traced(self, samples: int, seed: int) -> Rendering:
         items, skies, _, film, elements, contact = self.world.arrays
-        estimate(items, skies, film, elements[first:last], contact, first, seed, samples, self.power, out)
+        power = {Uniform: 0, Cosine: 1}[self.density]
+
+        def add(first: int, last: int, span: tuple[int, int], own_seed: int, out: np.ndarray) -> None:
+            directions.estimate(items, skies, film, elements[first:last], contact, first, own_seed, span, power, out)
+
+        return Rendering(*sampled(add, self.size, samples, seed, self.threads))

@@ -1,0 +1,66 @@
+"""Direct light piece by piece: one source of the compiled kernel each, with what can stand before it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lightproof.estimators import crowd, lamps, skies, world
+from lightproof.estimators.blockers import between
+from lightproof.estimators.estimator import spread
+from lightproof.estimators.kernel import estimate
+from lightproof.estimators.lamps import Beam, Lamp, Point
+from lightproof.estimators.meeting import Cosine, Uniform
+from lightproof.estimators.points import BLOCK, Grid, Random
+from lightproof.estimators.shapes import Flat, Sphere
+from lightproof.estimators.views import View
+from lightproof.scene import Scene
+
+FEW = 3  # blockers that are worth a kernel of their own
+REACH = 100.0  # sizes of the scene: the length of a shadow ray along a beam or to the sky
+
+Source = Lamp | Point | Beam | Uniform | Cosine
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One piece of a light with what can shadow it."""
+
+    lamp: Source
+    blockers: tuple[Flat | Sphere, ...] | np.ndarray
+
+    def sums(self, view: View, points: Random | Grid, model: np.floating, threads: int) -> np.ndarray:
+        """Sums (3, n) over the points: of a pivot, of what the values are beyond it, and of that squared."""
+
+        def add(first: int, last: int, blocks: tuple[int, int], out: np.ndarray) -> None:
+            slopes = None if view.slopes is None else view.slopes[first:last]
+            estimate(self.lamp, self.blockers, view.receivers[first:last], slopes, first, points, blocks, model, out)
+
+        return spread(add, len(view.receivers), -(-points.samples // BLOCK), 3, threads).T
+
+
+def aimed(scene: Scene, view: View) -> list[Piece]:
+    """Every piece of every light, to be sampled by points."""
+    return [shadowed(scene, view, owner, lamp) for owner, lamp in lamps.lamps(scene, reach(scene))]
+
+
+def met(scene: Scene, view: View, kind: type[Uniform | Cosine]) -> list[Piece]:
+    """Every piece of every light with an area, and the dome of all skies, to be met by directions."""
+    owned = [(owner, kind(shape, radiance)) for owner, shape, radiance in lamps.glowing(scene)]
+    dome = skies.dome(scene, reach(scene))
+    if dome:
+        owned.append(("", kind(dome, 1.0)))
+    return [shadowed(scene, view, owner, source) for owner, source in owned]
+
+
+def reach(scene: Scene) -> float:
+    """A length that leads out of the scene [m]."""
+    return REACH * world.build(scene).contact / world.CONTACT
+
+
+def shadowed(scene: Scene, view: View, owner: str, source: Source) -> Piece:
+    """A source of the light `owner` with what can stand before it."""
+    shape = getattr(source, "shape", getattr(source, "light", None))
+    blockers = between(scene, owner, shape if isinstance(shape, Flat | Sphere) else None, view.plane)
+    return Piece(source, tuple(blockers) if len(blockers) <= FEW else crowd.rows(blockers))
