@@ -117,6 +117,17 @@ for scene in suite.default().scenes():
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
 
 
+@pytest.mark.parametrize(("floor", "reflectance", "refused"),
+                         [(-0.5, 0.8, True), (0.0, 0.8, True), (0.0, 0.0, False), (0.3, 0.8, False)])
+def test_a_film_that_light_crosses_before_it_is_reflected_is_unsupported(floor, reflectance, refused):
+    """square-light's film in mid-air or on a floor that reflects: the receiver in its place would hide light; with a black
+    floor, or with everything above the film, it hides nothing that counts."""
+    corners = [[-0.1, -0.1, floor], [0.1, -0.1, floor], [0.1, 0.1, floor], [-0.1, 0.1, floor]]
+    surface = {"id": "floor", "reflectance": reflectance, "shape": {"type": "polygon", "vertices": corners}}
+    table = SUITE.scene("square-light").to_table() | {"max_bounces": 1, "surface": [surface]}
+    assert bool(views.unsupported(scene_file.from_table(table, "crossed"))) is refused
+
+
 def test_a_missing_renderer_says_what_to_do(monkeypatch: pytest.MonkeyPatch):
     """No package: the pip command. A package whose shared library is missing: the list of system packages."""
     with pytest.raises(Unavailable, match=r"no-such-renderer is not installed: pip install 'lightproof\[mitsuba\]'"):

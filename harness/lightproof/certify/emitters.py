@@ -79,7 +79,10 @@ def sphere_light(shape: geometry.Sphere, radiance: float, receiver: Plane) -> Fo
 
     def irradiance(x: Vector) -> Ball:
         ray = minus(centre, x)
-        return exact(radiance) * _sphere(radius, dot(ray, ray), height, above)
+        square = dot(ray, ray)
+        if not square > radius * radius:
+            raise CannotCertify("a receiver is inside a sphere light, or on it")
+        return exact(radiance) * _sphere(radius, square, height, above)
 
     return irradiance
 

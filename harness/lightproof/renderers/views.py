@@ -20,6 +20,7 @@ PATCH = 1e-3  # side of a point's receiver, of the distance to the nearest shape
 LIFT = 1e-6  # of the film's diagonal: a receiver lies above a surface that coincides with the film
 MARGIN = 1e-4  # of the film's sides: a receiver reaches beyond the film, so that no ray along the border misses it
 SQUARE = 1e-9  # cosine of the angle between the sides of a film that counts as a rectangle
+COINCIDENT = 1e-6  # of the film's sides: what is no higher above the film's plane lies in it
 WHITE, DARK = 1.0, 1e-3  # reflectance of a receiver: dark where its own light could come back to it
 
 
@@ -68,6 +69,8 @@ def unsupported(scene: Scene) -> str | None:
         return "renderers give no solid angles"
     if isinstance(film, PlaneFilm) and abs(geometry.unit(film.u) @ geometry.unit(film.v)) > SQUARE:
         return "a camera's film is a rectangle, and this plane film is not"
+    if isinstance(film, PlaneFilm) and scene.reflects and _crossed(film, scene):
+        return "the receiver that stands for the film would hide light that passes through the film before it is reflected"
     return None
 
 
@@ -93,6 +96,15 @@ def pose(centre: Any, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray
     matrix = np.eye(4)
     matrix[:3] = np.stack([x, y, z, np.array(centre)], axis=1)
     return matrix
+
+
+def _crossed(film: PlaneFilm, scene: Scene) -> bool:
+    """Whether light may come from behind the film's plane, or a shape lies in it or reaches behind it."""
+    corners = [mesh.tessellate(item.shape).vertices for item in (*scene.lights, *scene.surfaces) if hasattr(item, "shape")]
+    corners += [np.array([light.position]) for light in scene.lights if isinstance(light, PointLight)]
+    everywhere = len(scene.lights) + len(scene.surfaces) > len(corners)
+    size = float(np.linalg.norm(film.u) + np.linalg.norm(film.v))
+    return everywhere or any(((points - film.origin) @ film.normal).min() <= COINCIDENT * size for points in corners)
 
 
 def _camera(film: CameraFilm) -> View:
