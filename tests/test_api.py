@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 import lightproof
+from lightproof import suite
 from lightproof.api import RenderError
 
 
@@ -41,6 +43,22 @@ def test_a_ladder_confirms_a_fail_and_names_the_mistake(exact):
     ladder = {samples: np.pi * exact + random.normal(0, 0.01 / np.sqrt(samples), (16, *exact.shape)) for samples in (64, 256)}
     verdict = lightproof.judge(ladder, "square-light")
     assert verdict.outcome == "fail" and "pi" in verdict.reason
+
+
+def test_a_loaded_scene_of_ones_own_finds_its_reference(tmp_path, exact):
+    """A suite of the user's: the scene object alone is enough to know its light."""
+    for name in ("scenes", "references"):
+        shutil.copytree(suite.default().root / name, tmp_path / name)
+    (tmp_path / "scenes" / "square-light.toml").rename(tmp_path / "scenes" / "mine.toml")
+    for kind in ("csv", "toml"):
+        (tmp_path / "references" / f"square-light.{kind}").rename(tmp_path / "references" / f"mine.{kind}")
+    mine = lightproof.load(f"{tmp_path}/scenes/mine.toml")
+    assert lightproof.judge(exact, mine).outcome == "pass"
+
+
+def test_films_without_a_ladder_are_asked_for_no_samples(exact):
+    verdict = lightproof.judge(exact + np.random.default_rng(3).normal(0, 0.1, (4, *exact.shape)), "square-light")
+    assert verdict.outcome == "undecided" and verdict.samples_needed is None and "samples" not in verdict.reason
 
 
 def test_films_of_the_wrong_shape_are_refused(exact):

@@ -123,6 +123,15 @@ def test_a_method_that_is_not_there_is_incomplete(accepted, tmp_path, capsys):
     assert "lost-renderer" in capsys.readouterr().out
 
 
+def test_a_run_without_some_accepted_rows_is_incomplete(accepted, tmp_path, capsys):
+    """A run of one method, judged by a baseline that knows two."""
+    runs = tmp_path / "runs"
+    assert main(["run", "point-light", "--with", "analytic", "--budget", "30", "--out", str(runs)]) == 0
+    (run,) = runs.iterdir()
+    assert main(["gate", "--run", str(run), "--baseline", str(accepted), "--out", str(tmp_path / "state")]) == 3
+    assert "mc-area on point-light: the run has no result of it" in capsys.readouterr().out
+
+
 PLUGIN_TEST = """
 import pytest
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import tomllib
 
 import pytest
 from hypothesis import given
@@ -136,6 +137,34 @@ def test_a_closed_white_enclosure_with_all_bounces_is_refused(tmp_path):
         read(tmp_path, text)
 
 
+WALLS = [[[0, 0, 0], [0, 1, 0], [0, 1, 1], [0, 0, 1]], [[1, 0, 0], [1, 0, 1], [1, 1, 1], [1, 1, 0]],
+         [[0, 0, 0], [0, 0, 1], [1, 0, 1], [1, 0, 0]], [[0, 1, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1]],
+         [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]]]
+
+
+@pytest.mark.parametrize(("reflectance", "turned", "refused"), [(1, False, True), (0.9, False, False), (1, True, False)])
+def test_a_white_room_is_refused_and_a_grey_one_or_a_white_box_is_not(reflectance, turned, refused):
+    """A unit cube of six polygons: light never leaves it where all are white and face inward."""
+    surfaces = [{"id": f"wall-{index}", "reflectance": reflectance,
+                 "shape": {"type": "polygon", "vertices": wall[::-1 if turned else 1]}}
+                for index, wall in enumerate(WALLS)]
+    table = tomllib.loads(BOX) | {"max_bounces": "all", "surface": surfaces}
+    if refused:
+        with pytest.raises(SceneError, match="never loses light"):
+            scene_file.from_table(table, "room")
+    else:
+        scene_file.from_table(table, "room")
+
+
+def test_a_scene_in_which_nothing_shines_is_refused():
+    table = tomllib.loads(BOX)
+    del table["light"]
+    with pytest.raises(SceneError, match="nothing shines"):
+        scene_file.from_table(table, "dark")
+    table["surface"][0]["radiance"] = 0.7
+    assert scene_file.from_table(table, "glowing").surfaces[0].radiance == 0.7
+
+
 def test_missing_binary_and_huge_files(tmp_path):
     with pytest.raises(SceneError, match="cannot be read"):
         scene_file.read_cases(tmp_path / "none.toml")
@@ -164,8 +193,6 @@ paths = st.sampled_from(["title", "tags", "light", "light.lamp.shape", "light.la
 @given(paths, toml_values)
 def test_any_value_anywhere_is_accepted_or_a_scene_error(path, value):
     """Nothing that parses as TOML or JSON may raise anything but SceneError."""
-    import tomllib
-
     table = tomllib.loads(BOX)
     try:
         scene = scene_file.from_table(scene_file._replaced(table, {path: value}), "box")

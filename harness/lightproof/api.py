@@ -6,6 +6,7 @@ import math
 import os
 import tempfile
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,8 @@ from lightproof.scene import Scene
 from lightproof.trial import Result, Status, Trial
 from lightproof.verdict import Verdict
 
+_homes: dict[Scene, suite.Suite] = {}  # where the references of loaded scenes are
+
 
 class RenderError(RuntimeError):
     """A method that could not fill the film: says why."""
@@ -26,7 +29,8 @@ class RenderError(RuntimeError):
 
 def load(scene: str) -> Scene:
     """A scene by its id, `id:case`, or the path of a file. Raises SceneError."""
-    return suite.find(scene, suite.default())[0]
+    found, _homes[found] = suite.find(scene, suite.default())
+    return found
 
 
 def reference(scene: Scene | str) -> Reference:
@@ -60,16 +64,21 @@ def judge(films: ArrayLike | Mapping[int, ArrayLike], scene: Scene | str) -> Ver
     a ladder {samples: replicates}, in the film's unit.
 
     One film is judged as noise-free: whatever is off counts as bias. A fail needs two steps of a ladder, each 4 times the
-    samples of the one before. Raises ValueError where the shape does not fit, SceneError, ReferenceError.
+    samples of the one before; without a ladder nothing is known of samples, so none are asked for. Raises ValueError where
+    the shape does not fit, SceneError, ReferenceError.
     """
     scene, home = _found(scene)
-    ladder = films if isinstance(films, Mapping) else {1: films}
+    counted = isinstance(films, Mapping)
+    ladder = films if counted else {1: films}
     results = [result for samples, step in ladder.items() for result in _results(np.asarray(step, float), samples, scene)]
-    return verdict.judge(results, home.reference(scene), scene)
+    judged = verdict.judge(results, home.reference(scene), scene)
+    if counted or not judged.samples_needed:
+        return judged
+    return replace(judged, samples_needed=None, reason=judged.reason.removesuffix(verdict.demand(judged.samples_needed)))
 
 
 def _found(scene: Scene | str) -> tuple[Scene, suite.Suite]:
-    return suite.find(scene, suite.default()) if isinstance(scene, str) else (scene, suite.default())
+    return suite.find(scene, suite.default()) if isinstance(scene, str) else (scene, _homes.get(scene, suite.default()))
 
 
 def _results(films: np.ndarray, samples: int, scene: Scene) -> list[Result]:

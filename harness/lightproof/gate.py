@@ -74,20 +74,23 @@ class Gate:
         with Pool(self.threads) as pool:
             missing = {name: reason for name in {key[2] for key in accepted} if (reason := _missing(name, pool))}
             here = [state for state in accepted.values() if state.method not in missing]
-            return self._confirmed(self._draw(here, SEEDS[0], pool), accepted, pool, tuple(missing.values()))
+            return self._confirmed(self._draw(here, SEEDS[0], pool), accepted, pool, missing)
 
     def check_run(self, record: Store, accepted: Mapping[Key, State]) -> Report:
         """Judge what a stored run has already measured. Raises StoreError, FilmError."""
         with Pool(self.threads) as pool:
-            return self._confirmed(observe_run(record, accepted), accepted, pool, ())
+            return self._confirmed(observe_run(record, accepted), accepted, pool, {})
 
-    def _confirmed(self, states: Sequence[State], accepted: Mapping[Key, State], pool: Pool, missing: tuple[str, ...]) -> Report:
+    def _confirmed(self, states: Sequence[State], accepted: Mapping[Key, State], pool: Pool,
+                   missing: Mapping[str, str]) -> Report:
         """What is worse; a row that is only noisier must be so with the second seed too."""
         findings = _worse(states, accepted)
         noisier = [accepted[finding.state.key] for finding in findings if finding.noisier]
         again = {finding.state.key for finding in _worse(self._draw(noisier, SEEDS[1], pool), accepted)} if noisier else set()
         confirmed = [finding for finding in findings if not finding.noisier or finding.state.key in again]
-        return Report(tuple(states), tuple(confirmed), missing)
+        absent = accepted.keys() - {state.key for state in states}
+        unasked = [f"{accepted[key].name}: the run has no result of it" for key in sorted(absent) if key[2] not in missing]
+        return Report(tuple(states), tuple(confirmed), (*missing.values(), *unasked))
 
     def _draw(self, rows: Sequence[State], seed: int, pool: Pool) -> list[State]:
         """The rows measured with one seed: each climbs to its accepted step, and one further where that does not decide."""

@@ -28,6 +28,9 @@ def pytest_runtest_call(item: pytest.Item) -> None:
     """Judge the marked rows before the test's own body; anything that is not as good as the baseline fails the test."""
     mark = item.get_closest_marker(MARK)
     if mark:
+        unknown = set(mark.kwargs) - {"scenes", "methods", "baseline"}
+        if mark.args or unknown:
+            raise pytest.UsageError(f"{MARK} takes scenes=[...], methods=[...] and baseline='...', nothing else")
         complaints = check(item.config.invocation_params.dir, **mark.kwargs)
         if complaints:
             pytest.fail("\n".join(complaints), pytrace=False)

@@ -232,7 +232,9 @@ class Scene:
         ids = [item.id for item in (*self.lights, *self.surfaces)]
         for duplicate in {name for name in ids if ids.count(name) > 1}:
             raise SceneError("id", f"'{duplicate}' names two things; ids must differ")
-        if self.max_bounces == "all" and any(_never_ends(surface) for surface in self.surfaces):
+        if not self.lights and not any(surface.radiance for surface in self.surfaces):
+            raise SceneError("light", "nothing shines; give a light, or a surface with a radiance of its own")
+        if self.max_bounces == "all" and (any(map(_white_ball, self.surfaces)) or _white_room(self.surfaces)):
             raise SceneError("max_bounces", 'a closed surface of reflectance 1 never loses light; give a number instead of "all"')
         object.__setattr__(self, "digest", _digest(self))
 
@@ -266,8 +268,16 @@ class Scene:
         return self.max_bounces != 0 and any(surface.reflectance > 0 for surface in self.surfaces)
 
 
-def _never_ends(surface: Surface) -> bool:
+def _white_ball(surface: Surface) -> bool:
     return surface.reflectance == 1 and surface.side == "inside" and isinstance(surface.shape, geometry.Sphere)
+
+
+def _white_room(surfaces: tuple[Surface, ...]) -> bool:
+    """Whether white polygons close round a room: each edge is run through once either way, and the fronts face inward."""
+    white = [surface.shape for surface in surfaces if surface.reflectance == 1 and isinstance(surface.shape, geometry.Polygon)]
+    edges = [edge for shape in white for edge in zip(shape.vertices, (*shape.vertices[1:], shape.vertices[0]), strict=True)]
+    volume = sum(float(np.dot(shape.vertices[0], geometry.vector_area(np.array(shape.vertices)))) for shape in white)
+    return sorted(edges) == sorted((end, start) for start, end in edges) and volume < 0
 
 
 def _digest(scene: Scene) -> str:

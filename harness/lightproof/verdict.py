@@ -135,12 +135,17 @@ def _reason(final: Finding, rungs: Sequence[Rung], reference: Reference, scene: 
     """In words, with the samples that would decide an undecided verdict, or the likely mistake behind a failing film, where they
     can be told."""
     if final.samples_needed:
-        return f"{final.message}; {final.samples_needed:,} samples would decide"
+        return final.message + demand(final.samples_needed)
     if final.outcome is not Outcome.FAIL:
         return final.message
     last = [rung for rung in rungs if rung.complete][-1]
     mistake = diagnose.diagnose(last.films.mean(axis=0), last.element_error, reference.value, scene)
     return f"{final.message}; {mistake}" if mistake else final.message
+
+
+def demand(samples_needed: int) -> str:
+    """How the reason of an undecided verdict ends."""
+    return f"; {samples_needed:,} samples would decide"
 
 
 def _step(rung: Rung, finding: Finding) -> Step:
