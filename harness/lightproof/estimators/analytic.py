@@ -45,9 +45,9 @@ def from_light(items, k, x, n, shade, contact, pile):
     if item[KIND] != DISK:
         return polygon(items, k, x, n, contact, pile)
     normal, radius = vector(item, NORMAL), norm(vector(item, U))
-    if shade[k] < 0:
-        return disk(center, normal, radius, n)
     blocker = items[shade[k]]
+    if shade[k] < 0 or dot(sub(vector(blocker, CENTER), x), n) <= 0:
+        return disk(center, normal, radius, n)
     return disk_behind_disk(center, normal, radius, sub(vector(blocker, CENTER), x), norm(vector(blocker, U)), n)
 
 
@@ -106,7 +106,7 @@ class Analytic(Estimator):
         self.scene = scene
         self.world = build(scene)
         self.enclosed = any(surface.side == "inside" for surface in scene.surfaces)
-        self.shade = shades(self.world.items)
+        self.shade = shades(scene, self.world.items)
         self.extended = bool(np.any(self.world.elements[:, 3:9]))  # points have no cells
 
     def warm_up(self) -> None:

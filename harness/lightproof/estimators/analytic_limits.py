@@ -8,7 +8,7 @@ from lightproof import scene as scenes
 from lightproof.estimators import elements
 from lightproof.estimators.blockers import Plane, between, plane_of
 from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, support
-from lightproof.estimators.world import DISK, KIND, NORMAL, RADIANCE
+from lightproof.estimators.world import CENTER, DISK, KIND, V
 from lightproof.scene import CameraFilm, Scene
 
 PARALLEL = 1e-12  # 1 - |cosine| of two disks that count as parallel
@@ -57,11 +57,17 @@ def disks_unsupported(light: Disk, blocker: Disk, plane: Plane | None, name: str
     return None
 
 
-def shades(items: np.ndarray) -> np.ndarray:
+def shades(scene: Scene, items: np.ndarray) -> np.ndarray:
     """For every item (m,) the index of the disk that stands before it where it is a disk that shines, else -1."""
-    disks = np.flatnonzero(items[:, KIND] == DISK)
     shade = np.full(len(items), -1)
-    for k in disks[items[disks, RADIANCE] > 0]:
-        before = [j for j in disks if j != k and (items[j, 1:4] - items[k, 1:4]) @ items[k, NORMAL:NORMAL + 3] > 0]
-        shade[k] = before[0] if before else -1
+    for item in (*scene.lights, *scene.surfaces):
+        for light in filter(lambda piece: isinstance(piece, Disk), emitting_pieces(item)):
+            for blocker in (disk for plane in receiving_planes(scene) for disk in between(scene, item.id, light, plane)):
+                shade[row_of(light, items)] = row_of(blocker, items)
     return shade
+
+
+def row_of(disk: Disk, items: np.ndarray) -> int:
+    """The index of a disk among the items."""
+    same = (items[:, KIND] == DISK) & (items[:, CENTER:V] == np.concatenate([disk.center, disk.u])).all(axis=1)
+    return int(np.flatnonzero(same)[0])

@@ -15,6 +15,7 @@ from lightproof.estimators.vectors import dot, like, sub
 from lightproof.scene import AreaLight, Scene, Surface
 
 CONTACT = 1e-12  # of a distance: what lies no farther in front of a plane than this coincides with it
+INSIDE = 0.9999  # of a sphere's radius squared: what is nearer to its centre lies inside, and not on it by rounding
 
 
 Plane = tuple[np.ndarray, np.ndarray]  # a point and a unit normal
@@ -96,11 +97,12 @@ def _behind_disk(blocker, x, d):
 
 
 def _behind_sphere(blocker, x, d):
-    """The segment's point nearest to the centre lies inside; the ends lie outside."""
+    """The segment's point nearest to the centre lies inside, or an end does."""
     o = sub(blocker.center, x)
-    b, d2 = dot(o, d), dot(d, d)
-    miss = dot(o, o) * d2 - b * b
-    return (b > like(b, 0)) & (b < d2) & (miss < blocker.radius * blocker.radius * d2)
+    b, d2, o2, r2 = dot(o, d), dot(d, d), dot(o, o), blocker.radius * blocker.radius
+    through = (b > like(b, 0)) & (b < d2) & (o2 * d2 - b * b < r2 * d2)
+    inner = r2 * like(b, INSIDE)
+    return through | (o2 < inner) | (o2 - b - b + d2 < inner)
 
 
 def all_placed(blockers, origin, frame, model):

@@ -6,6 +6,8 @@ and every reflection of the points' light adds the same irradiance I/r^2 times a
 
 from __future__ import annotations
 
+from itertools import repeat
+
 import numpy as np
 
 from lightproof import geometry
@@ -30,9 +32,16 @@ def film_unsupported(scene: Scene, wall: Surface) -> str | None:
     match scene.film:
         case CameraFilm(projection="perspective") if distance(wall, scene.film.origin) < 1:
             return None
-        case PointsFilm() if all(abs(distance(wall, point) - 1) < ON_WALL for point in scene.film.positions):
+        case PointsFilm() if all(map(on_wall, repeat(wall), scene.film.positions, scene.film.normals)):
             return None
-    return f"its closed form takes points of the wall of '{wall.id}', or a perspective camera inside; path can"
+    return (f"its closed form takes points of the wall of '{wall.id}' that face its centre, or a perspective camera inside;"
+            " path can")
+
+
+def on_wall(wall: Surface, point: geometry.Vec3, normal: geometry.Vec3) -> bool:
+    """Whether a receiver lies on the wall and faces the centre."""
+    inward = geometry.unit(np.subtract(wall.shape.center, point))
+    return abs(distance(wall, point) - 1) < ON_WALL and float(np.abs(geometry.unit(normal) - inward).max()) < ON_WALL
 
 
 def distance(wall: Surface, point: geometry.Vec3) -> float:

@@ -24,7 +24,7 @@ from lightproof.estimators.world import (
     V,
 )
 
-FAR = 1e9  # contacts: beyond everything in the scene, for a shadow ray towards a beam
+FAR = 1e15  # contacts: far beyond everything in the scene, for a shadow ray towards a beam
 
 
 @strict

@@ -18,7 +18,7 @@ from lightproof.estimators.views import View
 from lightproof.scene import Scene
 
 FEW = 3  # blockers that are worth a kernel of their own
-REACH = 100.0  # sizes of the scene: the length of a shadow ray along a beam or to the sky
+REACH = 1e4  # sizes of the scene: the length of a shadow ray along a beam or to the sky
 
 Source = Lamp | Point | Beam | Uniform | Cosine
 

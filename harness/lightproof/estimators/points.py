@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
 from numba.extending import overload
 
 from lightproof.estimators.rng import TICK, block_keys, draws, stream
@@ -26,11 +25,10 @@ class Random(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """Midpoints: `rows` x `columns` of the light or hemisphere for each of `side` x `side` of the element."""
+    """Midpoints: `across` x `across` of the light or hemisphere for each of `side` x `side` of the element."""
 
     samples: int
-    rows: int
-    columns: int
+    across: int
     side: int
 
 
@@ -38,13 +36,12 @@ class Line(NamedTuple):
     """A block of a grid: its first point, cells along each axis."""
 
     first: float
-    rows: float
-    columns: float
+    across: float
     side: float
 
 
-def grid(rows: int, columns: int, side: int) -> Grid:
-    return Grid(rows * columns * side * side, rows, columns, side)
+def grid(across: int, side: int) -> Grid:
+    return Grid((across * side) ** 2, across, side)
 
 
 def opened(points, element, block):
@@ -61,7 +58,7 @@ def _opened_random(points, element, block):
 
 
 def _opened_grid(points, element, block):
-    return Line(np.float64(block * BLOCK), np.float64(points.rows), np.float64(points.columns), np.float64(points.side))
+    return Line(np.float64(block * BLOCK), np.float64(points.across), np.float64(points.side))
 
 
 def drawn(i, opened, model):
@@ -70,18 +67,17 @@ def drawn(i, opened, model):
 
 @overload(drawn)
 def _drawn(i, opened, model):
-    if isinstance(opened, types.NamedTuple):
-        return _drawn_midpoint
-    return lambda i, opened, model: draws(i, opened, model)
+    midpoint = getattr(opened, "instance_class", None) is Line
+    return _drawn_midpoint if midpoint else lambda i, opened, model: draws(i, opened, model)
 
 
 def _drawn_midpoint(i, opened, model):
     """Divided in floating point, which runs in vector registers; a half keeps the quotients off the integers."""
     cell = opened.first + i
-    upper = np.floor((cell + 0.5) / opened.columns)
-    pair = np.floor((upper + 0.5) / opened.rows)
+    row = np.floor((cell + 0.5) / opened.across)
+    pair = np.floor((row + 0.5) / opened.across)
     q = np.floor((pair + 0.5) / opened.side)
-    s, t = middle(upper - pair * opened.rows, opened.rows), middle(cell - upper * opened.columns, opened.columns)
+    s, t = middle(row - pair * opened.across, opened.across), middle(cell - row * opened.across, opened.across)
     p = middle(pair - q * opened.side, opened.side)
     return like(model, s), like(model, t), like(model, p), like(model, middle(q, opened.side))
 

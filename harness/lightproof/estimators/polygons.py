@@ -30,7 +30,9 @@ def put(rows, i, v):
 
 @strict
 def clip(polygon, count, normal, offset, out):
-    """The part where v . normal >= offset, into `out`; returns its count."""
+    """The part where v . normal >= offset, into `out`; returns its count. Raises ValueError where `out` could overflow."""
+    if count >= len(out):
+        raise ValueError("a light is cut into polygons of too many corners; take fewer blockers")
     kept = 0
     for i in range(count):
         a, b = vector(polygon[i], 0), vector(polygon[(i + 1) % count], 0)
@@ -157,6 +159,8 @@ def cut(pile, counts, tried, height, planes, edges):
     tried[height] = after
     if edges == 0:
         return height + 1
+    if height + edges > len(pile):
+        raise ValueError("a light is cut into too many pieces; take fewer blockers")
     for i in range(edges):
         normal = vector(planes[i], 0)
         counts[height] = clip(rest, count, scaled(-1.0, normal), 0.0, pile[height])

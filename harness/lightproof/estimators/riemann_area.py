@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from lightproof.estimators.compiled import strict, strict_kernel
-from lightproof.estimators.estimator import Estimator, spread
+from lightproof.estimators.lamps import glowing
 from lightproof.estimators.lighting import from_bulbs, from_item
 from lightproof.estimators.limits import no_cylinders, no_reflections, no_skies, no_solid_angle
+from lightproof.estimators.pieces import Piece, aimed
+from lightproof.estimators.points import Grid, grid
+from lightproof.estimators.riemann import Riemann
 from lightproof.estimators.tracing import receive
-from lightproof.estimators.world import SAMPLED, build
-from lightproof.method import Rendering
+from lightproof.estimators.views import View
+from lightproof.estimators.world import SAMPLED
 from lightproof.scene import Scene
 
 
@@ -40,34 +43,26 @@ def estimate(items, skies, bulbs, film, elements, contact, side, light_side, out
         out[e, 0] = total
 
 
-class RiemannArea(Estimator):
+class RiemannArea(Riemann):
     """Direct light from everything that has an area; `samples` become two square grids, as near as squares allow."""
 
-    deterministic = True
     limits = (no_cylinders, no_solid_angle, no_reflections, no_skies)
 
     def build(self, scene: Scene) -> None:
-        self.world = build(scene)
-        self.extended = bool(np.any(self.world.elements[:, 3:9]))  # points have no cells
-        self.lights = bool(self.world.items[:, SAMPLED].any())
+        super().build(scene)
+        self.lights = bool(glowing(scene))
 
-    def warm_up(self) -> None:
-        self.render(1, seed=0)
+    def sources(self, scene: Scene, seen: View) -> list[Piece]:
+        return aimed(scene, seen)
 
-    def grids(self, samples: int) -> tuple[int, int]:
-        """Midpoints along a side of the element and of the light, their squares' product about `samples`."""
-        if not (self.extended and self.lights):
-            both = max(1, round(samples**0.5))
-            return (both, 1) if self.extended else (1, both)
-        side = max(1, round(samples**0.25))
-        return side, max(1, round(samples**0.5 / side))
+    def grid(self, samples: int) -> Grid:
+        """As many midpoints along a side of the element as of the light; all of them where the other has no extent."""
+        if not self.lights:
+            return grid(1, max(1, round(samples**0.5)) if self.extended else 1)
+        side = max(1, round(samples**0.25)) if self.extended else 1
+        light_side = max(1, round(samples**0.5 / side))
+        return grid(light_side, side)
 
-    def render(self, samples: int, seed: int) -> Rendering:
-        side, light_side = self.grids(samples)
-        items, skies, bulbs, film, rows, contact = self.world.arrays
-
-        def add(first: int, last: int, span: tuple[int, int], out: np.ndarray) -> None:
-            estimate(items, skies, bulbs, film, rows[first:last], contact, side, light_side, out)
-
-        sums = spread(add, self.size, 1, 1, self.threads)
-        return Rendering(sums[:, 0] / side**2, (side * light_side) ** 2)
+    def trace(self, cut: Grid, first: int, last: int, out: np.ndarray) -> None:
+        items, skies, bulbs, film, elements, contact = self.world.arrays
+        estimate(items, skies, bulbs, film, elements[first:last], contact, cut.side, cut.across, out)

@@ -1,5 +1,5 @@
-"""The textbook's Riemann sum over directions: the element in a midpoint grid, the hemisphere in steps of theta and phi,
-E ~ sum L(theta, phi) cos(theta) sin(theta) dtheta dphi."""
+"""The textbook's Riemann sum over directions: the element in a midpoint grid, the hemisphere in cells of equal solid angle,
+midpoints in z = cos(theta) and phi, E ~ sum L(z, phi) z dz dphi."""
 
 from __future__ import annotations
 
@@ -8,30 +8,26 @@ import math
 import numpy as np
 
 from lightproof.estimators.compiled import strict, strict_kernel
-from lightproof.estimators.directions import oriented
-from lightproof.estimators.estimator import Estimator, spread
+from lightproof.estimators.directions import cosine_power, oriented
 from lightproof.estimators.limits import no_bulbs, no_cylinders, no_reflections, no_solid_angle
+from lightproof.estimators.meeting import Uniform
+from lightproof.estimators.pieces import Piece, met
+from lightproof.estimators.points import Grid, grid
+from lightproof.estimators.riemann import Riemann
 from lightproof.estimators.tracing import receive, seen
-from lightproof.estimators.world import build
-from lightproof.method import Rendering
+from lightproof.estimators.views import View, view_from_outside
 from lightproof.scene import Scene
-
-TURNS = 4  # steps of phi for a step of theta: about square cells
 
 
 @strict
 def irradiance(items, skies, x, n, rings, contact):
-    """Midpoint sum over `rings` steps of theta and TURNS * rings of phi [W/m2]."""
+    """Midpoint sum over `rings` steps of z and as many of phi [W/m2]."""
     total = 0.0
-    step = math.pi / 2 / rings
     for j in range(rings):
-        theta = (j + 0.5) * step
-        sine, cosine = math.sin(theta), math.cos(theta)
-        for k in range(TURNS * rings):
-            phi = 2 * math.pi * (k + 0.5) / (TURNS * rings)
-            w = oriented((sine * math.cos(phi), sine * math.sin(phi), cosine), n)
-            total += sine * cosine * seen(items, skies, x, w, contact)
-    return total * step * 2 * math.pi / (TURNS * rings)
+        for k in range(rings):
+            w = cosine_power(0, (j + 0.5) / rings, (k + 0.5) / rings)
+            total += w[2] * seen(items, skies, x, oriented(w, n), contact)
+    return total * 2 * math.pi / rings**2
 
 
 @strict_kernel
@@ -48,31 +44,25 @@ def estimate(items, skies, film, elements, contact, side, rings, out):
         out[e, 0] = total
 
 
-class RiemannHemisphere(Estimator):
+class RiemannHemisphere(Riemann):
     """Direct light that fills a solid angle; `samples` become a square grid of the element times rings of directions."""
 
-    deterministic = True
     samples_lights = False
     limits = (no_cylinders, no_solid_angle, no_reflections, no_bulbs)
 
-    def build(self, scene: Scene) -> None:
-        self.world = build(scene)
-        self.extended = bool(np.any(self.world.elements[:, 3:9]))  # points have no cells
+    def seen(self, scene: Scene) -> View | None:
+        return view_from_outside(scene)
 
-    def warm_up(self) -> None:
-        self.render(1, seed=0)
+    def sources(self, scene: Scene, seen: View) -> list[Piece]:
+        return met(scene, seen, Uniform)
 
-    def grids(self, samples: int) -> tuple[int, int]:
-        """Midpoints along a side of the element, and rings of directions: side^2 TURNS rings^2 is about `samples`."""
-        side = max(1, round((samples / TURNS) ** 0.25)) if self.extended else 1
-        return side, max(1, round((samples / TURNS) ** 0.5 / side))
+    def grid(self, samples: int) -> Grid:
+        """Along the element's side half the sixth root of `samples`, for directions decide the error; as many steps of z as of
+        phi: more of phi would leave the rings near the normal too wide."""
+        side = max(1, round(samples ** (1 / 6) / 2)) if self.extended else 1
+        rings = max(1, round(samples**0.5 / side))
+        return grid(rings, side)
 
-    def render(self, samples: int, seed: int) -> Rendering:
-        side, rings = self.grids(samples)
-        items, skies, _, film, rows, contact = self.world.arrays
-
-        def add(first: int, last: int, span: tuple[int, int], out: np.ndarray) -> None:
-            estimate(items, skies, film, rows[first:last], contact, side, rings, out)
-
-        sums = spread(add, self.size, 1, 1, self.threads)
-        return Rendering(sums[:, 0] / side**2, side**2 * TURNS * rings**2)
+    def trace(self, cut: Grid, first: int, last: int, out: np.ndarray) -> None:
+        items, skies, _, film, elements, contact = self.world.arrays
+        estimate(items, skies, film, elements[first:last], contact, cut.side, cut.across, out)

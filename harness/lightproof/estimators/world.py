@@ -55,6 +55,7 @@ def build(scene: Scene, sample_surfaces: bool = True) -> World:
     bulbs = [row for light in scene.lights for row in bulb_rows(light)]
     film, elements = film_rows(scene.film)
     items = np.array(items, float).reshape(-1, WIDTH)
+    items[:, REFLECTANCE] *= scene.max_bounces != 0
     return World(items, np.array(skies, float).reshape(-1, 6), np.array(bulbs, float).reshape(-1, 5), film, elements,
                  CONTACT * size(scene.film, elements, items))
 

@@ -1,0 +1,42 @@
+"""What the textbook's Riemann sums share: a grid of midpoints over the element and over the light or the hemisphere."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+
+import numpy as np
+
+from lightproof.estimators.composed import Composed
+from lightproof.estimators.estimator import spread
+from lightproof.estimators.points import Grid
+from lightproof.method import Rendering
+from lightproof.scene import Scene
+
+
+class Riemann(Composed):
+    """Every piece of every light is summed over the same grid; `extended` says whether elements have an extent."""
+
+    deterministic = True
+    real = np.float32
+
+    def build(self, scene: Scene) -> None:
+        super().build(scene)
+        self.extended = self.view.extended if self.view else bool(np.any(self.world.elements[:, 3:9]))
+
+    @abstractmethod
+    def grid(self, samples: int) -> Grid:
+        """The grid of about `samples` points."""
+
+    @abstractmethod
+    def trace(self, cut: Grid, first: int, last: int, out: np.ndarray) -> None:
+        """Adds up, by rays, the film's values of elements `first` to `last` at the element's midpoints; `out` (n, 1)."""
+
+    def composed(self, samples: int, seed: int) -> Rendering:
+        cut = self.grid(samples)
+        sums = [piece.sums(self.view, cut, self.real(1), self.threads) for piece in self.pieces]
+        return Rendering(self.view.factor * sum(pivots + totals for pivots, totals, _ in sums) / cut.samples, cut.samples)
+
+    def traced(self, samples: int, seed: int) -> Rendering:
+        cut = self.grid(samples)
+        sums = spread(lambda first, last, span, out: self.trace(cut, first, last, out), self.size, 1, 1, self.threads)
+        return Rendering(sums[:, 0] / cut.side**2, cut.samples)
