@@ -6,7 +6,9 @@ import time
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from importlib.metadata import version
+from itertools import pairwise
 from typing import ClassVar
 
 import numpy as np
@@ -15,6 +17,7 @@ from lightproof.method import Method, Rendering
 from lightproof.scene import Scene
 
 TASKS = 64  # pieces of work for one film: fixed, so that the number of threads changes nothing
+SHARES = 4  # of a thread in the work, handed out as it gets done: evens out what else the machine does
 
 
 class Estimator(Method):
@@ -69,18 +72,29 @@ def sampled(add: Callable, size: int, samples: int, seed: int, threads: int) -> 
 def spread(add: Callable, size: int, steps: int, columns: int, threads: int) -> np.ndarray:
     """Runs `add(first, last, (begin, end), out)` over all elements and steps, cut into TASKS pieces or so; the sums (size,
     columns) do not depend on `threads`."""
-    tiles = np.array_split(np.arange(size), min(size, TASKS))
-    edges = np.linspace(0, steps, min(steps, max(1, TASKS // size)) + 1).astype(int).tolist()
-    sums = np.zeros((len(edges) - 1, size, columns))
+    tiles, spans = cuts(size, TASKS), cuts(steps, TASKS // size)
+    sums = np.zeros((len(spans), size, columns))
 
-    def work(task: tuple[int, np.ndarray]) -> None:
-        part, tile = task
-        first, last = int(tile[0]), int(tile[-1]) + 1
-        add(first, last, (edges[part], edges[part + 1]), sums[part, first:last])
+    def work(share: list[tuple[int, tuple[int, int]]]) -> None:
+        for part, (first, last) in share:
+            add(first, last, spans[part], sums[part, first:last])
 
-    with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(work, [(part, tile) for part in range(len(sums)) for tile in tiles]))
+    tasks = [(part, tile) for part in range(len(spans)) for tile in tiles]
+    shares = SHARES * threads
+    list(workers(threads).map(work, [tasks[start::shares] for start in range(min(shares, len(tasks)))]))
     return sums.sum(axis=0)
+
+
+def cuts(count: int, pieces: int) -> list[tuple[int, int]]:
+    """0 to `count` in so many pieces of about one size, none empty: first and last + 1 of each."""
+    edges = np.linspace(0, count, max(1, min(count, pieces)) + 1).astype(int).tolist()
+    return list(pairwise(edges))
+
+
+@cache
+def workers(threads: int) -> ThreadPoolExecutor:
+    """Threads that stay: starting them would take longer than a small film."""
+    return ThreadPoolExecutor(threads)
 
 
 def variance_of_mean(total: np.ndarray, square: np.ndarray, samples: int) -> np.ndarray | None:
