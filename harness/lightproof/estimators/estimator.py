@@ -16,7 +16,7 @@ import numpy as np
 from lightproof.method import Method, Rendering
 from lightproof.scene import Scene
 
-TASKS = 64  # pieces of work for one film: fixed, so that the number of threads changes nothing
+TASKS = 64  # pieces of work for one film, at most: fixed, so that the number of threads changes nothing
 SHARES = 4  # of a thread in the work, handed out as it gets done: evens out what else the machine does
 
 
@@ -69,10 +69,10 @@ def sampled(add: Callable, size: int, samples: int, seed: int, threads: int) -> 
     return sums[:, 0] / samples, samples, variance_of_mean(sums[:, 0], sums[:, 1], samples)
 
 
-def spread(add: Callable, size: int, steps: int, columns: int, threads: int) -> np.ndarray:
-    """Runs `add(first, last, (begin, end), out)` over all elements and steps, cut into TASKS pieces or so; the sums (size,
+def spread(add: Callable, size: int, steps: int, columns: int, threads: int, most: int = TASKS) -> np.ndarray:
+    """Runs `add(first, last, (begin, end), out)` over all elements and steps, cut into `most` pieces or so; the sums (size,
     columns) do not depend on `threads`."""
-    tiles, spans = cuts(size, TASKS), cuts(steps, TASKS // size)
+    tiles, spans = cuts(size, most), cuts(steps, most // size)
     sums = np.zeros((len(spans), size, columns))
 
     def work(share: list[tuple[int, tuple[int, int]]]) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from lightproof.estimators import crowd, lamps, skies, world
 from lightproof.estimators.blockers import between
-from lightproof.estimators.estimator import spread
+from lightproof.estimators.estimator import TASKS, spread
 from lightproof.estimators.kernel import estimate
 from lightproof.estimators.lamps import Beam, Lamp, Point
 from lightproof.estimators.meeting import Cosine, Uniform
@@ -17,6 +17,7 @@ from lightproof.estimators.shapes import Flat, Sphere
 from lightproof.estimators.views import View
 from lightproof.scene import Scene
 
+WORTHWHILE = 2**15  # samples: a task takes longer than to hand it to a thread
 FEW = 3  # blockers that are worth a kernel of their own
 REACH = 1e4  # sizes of the scene: the length of a shadow ray along a beam or to the sky
 
@@ -37,7 +38,9 @@ class Piece:
             slopes = None if view.slopes is None else view.slopes[first:last]
             estimate(self.lamp, self.blockers, view.receivers[first:last], slopes, first, points, blocks, model, out)
 
-        return spread(add, len(view.receivers), -(-points.samples // BLOCK), 3, threads).T
+        size = len(view.receivers)
+        tasks = min(max(1, size * points.samples // WORTHWHILE), TASKS)
+        return spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks).T
 
 
 def aimed(scene: Scene, view: View) -> list[Piece]:
