@@ -16,7 +16,7 @@ report: setup
 	$(BIN)/lightproof report
 
 nightly: setup
-	$(BIN)/lightproof run --tags nightly --budget 3600
+	$(BIN)/lightproof run --tags nightly --budget 7200 --cell-budget 180
 	$(BIN)/lightproof report
 
 test: setup

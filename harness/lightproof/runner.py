@@ -10,6 +10,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from statistics import median
 
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import Entry
@@ -86,7 +87,16 @@ class Cell:
         step, before = self.steps.get(self.next_samples, []), self.steps.get(self.next_samples // FACTOR, [])
         if len(step) > 1:
             return min(_renders(step)) * (self._films - len(step))
-        return _setup(before) + FACTOR * sum(_renders(before))
+        return _setup(before) + self._films * self._film_seconds(self.next_samples)
+
+    def _film_seconds(self, samples: int) -> float:
+        """What a film takes, by the line through the last two complete steps (small films are mostly overhead), or in
+        proportion to the only one; 0 where nothing was measured yet."""
+        known = [(each, median(_renders(step))) for each, step in sorted(self.steps.items()) if len(step) >= self._films]
+        if len(known) < 2:
+            return sum(seconds * samples / each for each, seconds in known)
+        (few, faster), (many, slower) = known[-2:]
+        return slower + max(0.0, slower - faster) * (samples - many) / (many - few)
 
     @property
     def wants_more(self) -> bool:
@@ -100,11 +110,11 @@ class Cell:
         """Whether the verdict is open and the samples that would decide it fit into the budget."""
         if self.decision.decided or self.decision.samples_needed is None:
             return False
-        step, cost, total = self.next_samples, self.next_seconds, self.seconds
+        step, total = self.next_samples, self.seconds + self.next_seconds
         while step < self.decision.samples_needed:
-            total += cost
-            step, cost = step * FACTOR, cost * FACTOR
-        return total + cost <= self.budget
+            step *= FACTOR
+            total += self._films * self._film_seconds(step)
+        return total <= self.budget
 
     @property
     def timeout(self) -> float:
