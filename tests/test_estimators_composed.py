@@ -9,7 +9,7 @@ import pytest
 from numba import njit
 
 from lightproof import suite
-from lightproof.estimators import directions, path
+from lightproof.estimators import directions, paths
 from lightproof.estimators.estimator import sampled
 from lightproof.estimators.mc_area import McArea
 from lightproof.estimators.mc_cosine import McCosine
@@ -119,7 +119,7 @@ def test_patches_that_pixels_see_are_the_tracer_s(film):
     one = scene(table["light"], table["surface"], film, max_bounces=1)
     assert view(one) is not None
     fast = prepared(McArea, one).render(1 << 16, 3)
-    film, _, variance = sampled(path.Paths(build(one), 1, glow=False).add, one.size, 1 << 16, 4, 2)
+    film, _, variance = sampled(paths.Paths(build(one), 1, glow=False).add, one.size, 1 << 16, 4, 2)
     assert (np.abs(fast.film - film) < SIGMAS * np.sqrt(fast.variance + variance)).all()
 
 

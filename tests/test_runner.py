@@ -158,12 +158,19 @@ def test_a_hopeless_verdict_gets_three_steps(tmp_path):
 
 def test_hopeless_verdicts_come_after_others(tmp_path):
     """a needs more than its budget holds, b costs three times as much and is decided at 256 samples: b's verdict comes first."""
-    pool = FakePool({"a": 1e-6, "b": 3e-6})
+    pool = FakePool({"a": 1e-4, "b": 3e-4})
     needed = {"a": 10**9, "b": 256}
     climb(tmp_path, pool, lambda results: Decision(results[-1].trial.method == "b" and results[-1].trial.samples >= 256,
-                                                   needed[results[0].trial.method]), cell_budget=1.0)  # fmt: skip
+                                                   needed[results[0].trial.method]), cell_budget=3.0)  # fmt: skip
     order = [(trial.method, trial.samples) for trial in pool.asked if trial.replicate == 0]
     assert order == [("a", 64), ("b", 64), ("b", 256), ("a", 256), ("a", 1024), ("b", 1024)]
+
+
+def test_cheap_steps_are_taken_without_looking_far_ahead(tmp_path):
+    """4 ns a sample and step: a verdict 2^40 samples away is far beyond 1 s, but steps under 0.02 s are taken: to 4^11."""
+    pool = FakePool({"a": 1e-9})
+    climb(tmp_path, pool, lambda results: Decision(False, 2**40), cell_budget=1.0)
+    assert max(steps(pool)) == 4**11
 
 
 def test_a_verdict_that_no_samples_decide_gets_three_steps(tmp_path):

@@ -13,7 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from lightproof.method import Method, Rendering
+from lightproof.method import Method
 from lightproof.scene import Scene
 
 TASKS = 64  # pieces of work for one film, at most: fixed, so that the number of threads changes nothing
@@ -47,20 +47,6 @@ class Estimator(Method):
     @abstractmethod
     def warm_up(self) -> None:
         """Run every kernel that this scene needs once, as little as it can do."""
-
-
-class Sampler(Estimator):
-    """A Monte Carlo method whose kernel adds up values and their squares, sample by sample."""
-
-    def warm_up(self) -> None:
-        self.add(0, 1, (0, 1), 0, np.zeros((1, 2)))
-
-    @abstractmethod
-    def add(self, first: int, last: int, samples: tuple[int, int], seed: int, out: np.ndarray) -> None:
-        """Sums over samples `samples[0]` to `samples[1]` of elements `first` to `last`, into `out` (last - first, 2)."""
-
-    def render(self, samples: int, seed: int) -> Rendering:
-        return Rendering(*sampled(self.add, self.size, samples, seed, self.threads))
 
 
 def sampled(add: Callable, size: int, samples: int, seed: int, threads: int) -> tuple[np.ndarray, int, np.ndarray | None]:

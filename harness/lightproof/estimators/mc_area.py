@@ -10,7 +10,7 @@ import numpy as np
 from lightproof.estimators.composed import Composed
 from lightproof.estimators.estimator import sampled, variance_of_mean
 from lightproof.estimators.limits import no_cylinders, no_glowing_inside, no_reflections, no_skies, no_solid_angle
-from lightproof.estimators.path import Paths
+from lightproof.estimators.paths import Paths
 from lightproof.estimators.pieces import Piece, aimed
 from lightproof.estimators.points import Random
 from lightproof.estimators.views import View
@@ -35,7 +35,11 @@ class McArea(Composed):
     def build(self, scene: Scene) -> None:
         super().build(scene)
         self.receivers = self.view.receivers if self.view else None
-        self.bounces = min(scene.max_bounces, 1) if scene.reflects else 0
+        self.paths = None if self.view else self.followed(scene)
+
+    def followed(self, scene: Scene) -> Paths:
+        """What is traced where there is no view: paths of one reflection at most."""
+        return Paths(self.world, min(scene.max_bounces, 1) if scene.reflects else 0, glow=False)
 
     def sources(self, scene: Scene, seen: View) -> list[Piece]:
         return aimed(scene, seen)
@@ -58,4 +62,4 @@ class McArea(Composed):
         return (pivots + totals) / samples, variance_of_mean(totals, self.view.factor * squares, samples)
 
     def traced(self, samples: int, seed: int) -> Rendering:
-        return Rendering(*sampled(Paths(self.world, self.bounces, glow=False).add, self.size, samples, seed, self.threads))
+        return Rendering(*sampled(self.paths.add, self.size, samples, seed, self.threads))

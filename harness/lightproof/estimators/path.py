@@ -1,98 +1,29 @@
-"""Diffuse paths with next-event estimation: lights are sampled point by point, surfaces that glow and skies are met by
-directions drawn in proportion to the cosine. A path ends by roulette that keeps its expectation (Arvo and Kirk 1990)."""
+"""Diffuse paths through every scene; where nothing reflects and every light can be aimed at, the kernel of mc-area is all
+that is left of them."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from typing import Any
 
-import numpy as np
-
-from lightproof.estimators.compiled import strict, strict_kernel
-from lightproof.estimators.directions import cosine_power, oriented
-from lightproof.estimators.estimator import Sampler
-from lightproof.estimators.lighting import direct
 from lightproof.estimators.limits import no_cylinders, no_solid_angle
-from lightproof.estimators.rng import mix64, stream, uniform
-from lightproof.estimators.tracing import front_normal, nearest, receive, sky_radiance
-from lightproof.estimators.vectors import along, dot
-from lightproof.estimators.world import LAMP, RADIANCE, RECEIVER, REFLECTANCE, SAMPLED, World, build
+from lightproof.estimators.mc_area import McArea
+from lightproof.estimators.paths import Paths, paths
+from lightproof.estimators.views import View
 from lightproof.scene import Scene
 
-FAINT = 0.05  # share of a path's first weight below which roulette plays
-SURVIVAL = 0.95  # the highest chance of going on once it does
-ENDLESS = 2**31 - 1
 
-
-@strict
-def arriving(items, skies, bulbs, x, n, bounces, glow, key, contact):
-    """Estimate of the irradiance at x after up to `bounces` reflections [W/m2]."""
-    total, weight = 0.0, 1.0
-    while True:
-        key = mix64(key)
-        total += weight * direct(items, bulbs, x, n, mix64(key ^ np.uint64(1)), contact)
-        if bounces == 0 and not glow:
-            return total
-        w = oriented(cosine_power(1, uniform(key, 0), uniform(key, 1)), n)
-        i, t = nearest(items, x, w, contact)
-        if i < 0:
-            return total + weight * math.pi * sky_radiance(skies, w)
-        x = along(x, t, w)
-        n = front_normal(items[i], x)
-        if dot(n, w) >= 0 or items[i, LAMP] != 0:
-            return total
-        total += weight * math.pi * items[i, RADIANCE]
-        weight *= items[i, REFLECTANCE]
-        bounces -= 1
-        survival = min(items[i, REFLECTANCE], SURVIVAL) if weight < FAINT else 1.0
-        if bounces < 0 or uniform(key, 2) >= survival:
-            return total
-        weight /= survival
-
-
-@strict_kernel
-def estimate(items, skies, bulbs, film, elements, contact, first, seed, samples, bounces, glow, out):
-    """Sums of the value and of its square over samples `samples[0]` to `samples[1]` of each of `elements`; `out` (n, 2).
-    Light of up to `bounces` reflections; `glow`: whether there is light that only a direction can meet."""
-    for e in range(len(elements)):
-        total, square = 0.0, 0.0
-        for i in range(samples[0], samples[1]):
-            key = stream(seed, first + e, i)
-            p, q = uniform(key, 0) - 0.5, uniform(key, 1) - 0.5
-            value, factor, x, n = receive(items, skies, film, elements[e], p, q, contact)
-            left = bounces if film == RECEIVER else bounces - 1
-            if factor > 0 and left >= 0:
-                value += factor * arriving(items, skies, bulbs, x, n, left, glow, mix64(key), contact)
-            total += value
-            square += value * value
-        out[e, 0], out[e, 1] = total, square
-
-
-@dataclass(frozen=True)
-class Paths:
-    """A scene as the kernel takes it. `glow`: whether some light is met by directions and not sampled point by point."""
-
-    world: World
-    bounces: int
-    glow: bool
-
-    def add(self, first: int, last: int, samples: tuple[int, int], seed: int, out: np.ndarray) -> None:
-        """Sums over samples `samples[0]` to `samples[1]` of elements `first` to `last`, into `out` (last - first, 2)."""
-        items, skies, bulbs, film, elements, contact = self.world.arrays
-        estimate(items, skies, bulbs, film, elements[first:last], contact, first, seed, samples, self.bounces, self.glow, out)
-
-
-class Path(Sampler):
+class Path(McArea):
     """Every scene that the format knows, but for cylinders and solid angles; any number of reflections."""
 
     samples_lights = False
     limits = (no_cylinders, no_solid_angle)
 
-    def build(self, scene: Scene) -> None:
-        world = build(scene, sample_surfaces=False)
-        glowing = (world.items[:, RADIANCE] > 0) & (world.items[:, SAMPLED] == 0)
-        bounces = 0 if not scene.reflects else ENDLESS if scene.max_bounces == "all" else scene.max_bounces
-        self.paths = Paths(world, bounces, bool(len(world.skies) or glowing.any()))
+    def settings(self) -> Mapping[str, Any]:
+        return {"sampler": "independent", "lights": "next event", "roulette": "unbiased"}
 
-    def add(self, first: int, last: int, samples: tuple[int, int], seed: int, out: np.ndarray) -> None:
-        self.paths.add(first, last, samples, seed, out)
+    def seen(self, scene: Scene) -> View | None:
+        return None if any(limit(scene) for limit in McArea.limits) else super().seen(scene)
+
+    def followed(self, scene: Scene) -> Paths:
+        return paths(scene)
