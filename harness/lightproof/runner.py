@@ -23,6 +23,7 @@ FACTOR = 4
 MOST_SAMPLES = 2**30
 STEPS_FOR_A_SLOPE = 3
 SLOPE_CAN_WAIT = 4  # a step that serves only the slope gives way to one for a verdict that costs up to so many times as much
+CHEAP = 0.02  # of a cell's budget: a step that costs less is taken without looking further ahead
 SHORTEST_TIMEOUT = 30.0
 SLOWER_THAN_EXPECTED = 10
 
@@ -110,6 +111,8 @@ class Cell:
         """Whether the verdict is open and the samples that would decide it fit into the budget."""
         if self.decision.decided or self.decision.samples_needed is None:
             return False
+        if self.next_seconds < CHEAP * self.budget:
+            return True
         step, total = self.next_samples, self.seconds + self.next_seconds
         while step < self.decision.samples_needed:
             step *= FACTOR
