@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="name, glob, module:Class or file.py:Class (default: each renderer's best configuration)")
     add("--tags", nargs="+", action="extend", default=[], metavar="TAG",
         help="scenes with one of these; nightly: every case of every scene, every configuration")
-    add("--budget", type=seconds, default=240.0, metavar="S", help="of the whole run (default: %(default)g s)")
+    add("--budget", type=seconds, default=250.0, metavar="S", help="of the whole run (default: %(default)g s)")
     add("--cell-budget", type=seconds, default=60.0, metavar="S", help="of a scene and method (default: %(default)g s)")
     add("--replicates", type=count(2), default=16, metavar="N", help="films a step (default, and the rule's: %(default)s)")
     add("--threads", type=count(1), default=machine.usable_cores(), metavar="N", help="default: all cores, %(default)s here")
