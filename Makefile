@@ -35,8 +35,8 @@ $(READY): pyproject.toml constraints.txt apt-packages.txt
 	@test -n "$(PYTHON)" || { echo "Lightproof needs Python 3.11 or 3.13: install one, or name it with make PYTHON=/path/to/python"; exit 2; }
 	@harness/system-packages apt-packages.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install -q -c constraints.txt hatchling editables
-	$(BIN)/pip install -q -c constraints.txt --no-build-isolation -e '.[$(EXTRAS),test]'
+	PIP_CONSTRAINT=$(CURDIR)/constraints.txt PIP_BUILD_CONSTRAINT=$(CURDIR)/constraints.txt \
+		$(BIN)/pip install -q -e '.[$(EXTRAS),test]'
 	@touch $@
 
 clean:
