@@ -72,7 +72,7 @@ def test_render_one_film_and_replicates(exact):
     one = lightproof.render("square-light", "mc-area", samples=4096, threads=1)
     several = lightproof.render("square-light", "mc-area", samples=4096, replicates=2, threads=1)
     assert one.shape == (12, 16) and several.shape == (2, 12, 16)
-    np.testing.assert_array_equal(one, several[0])
+    np.testing.assert_allclose(one, several[0], rtol=1e-6)  # a kernel just compiled and one from the cache may round differently
     assert (several[0] != several[1]).any()
     np.testing.assert_allclose(one, exact, atol=0.02 * exact.max())
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from flint import arb
+from flint import acb, arb
 
 from lightproof import geometry, scene
 from lightproof.certify import balls
@@ -80,7 +80,7 @@ def sphere_light(shape: geometry.Sphere, radiance: float, receiver: Plane) -> Fo
     def irradiance(x: Vector) -> Ball:
         ray = minus(centre, x)
         square = dot(ray, ray)
-        if not square > radius * radius:
+        if not isinstance(square, acb) and square <= radius * radius:
             raise CannotCertify("a receiver is inside a sphere light, or on it")
         return exact(radiance) * _sphere(radius, square, height, above)
 
