@@ -6,6 +6,7 @@ interval allows, confirmed by a second draw. Seconds are reported elsewhere and 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,7 @@ from lightproof.judging import Judge
 from lightproof.references import Reference
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS, Entry
-from lightproof.runner import FACTOR, Cell, Progress, Runner
+from lightproof.runner import FACTOR, FIRST_SAMPLES, Cell, Progress, Runner
 from lightproof.scene import Scene
 from lightproof.store import Store
 from lightproof.suite import Suite
@@ -115,7 +116,9 @@ def _missing(method: str, pool: Pool) -> str:
 
 
 def _cell(scene: Scene, entry: Entry, row: State) -> Cell:
-    return Cell(scene, entry, CELL_SECONDS, REPLICATES, most_samples=max(row.samples, 1) * FACTOR)
+    """A row's cell: up to the accepted step whatever decides before it, and one step beyond where that does not decide."""
+    steps = 1 + round(math.log(max(row.samples, FIRST_SAMPLES) / FIRST_SAMPLES, FACTOR))
+    return Cell(scene, entry, CELL_SECONDS, REPLICATES, most_samples=max(row.samples, 1) * FACTOR, least_steps=steps)
 
 
 def _worse(states: Iterable[State], accepted: Mapping[Key, State]) -> list[Finding]:

@@ -42,13 +42,14 @@ class Decision:
 class Cell:
     """One method on one scene: its results so far by step of the ladder (samples per element), and what they decide.
     `budget` [s] is what set-up and rendering may take; `replicates` is the number of films a step; no step has more than
-    `most_samples` per element."""
+    `most_samples` per element, and `least_steps` are taken even where fewer decide."""
 
     scene: Scene
     entry: Entry
     budget: float
     replicates: int
     most_samples: int = MOST_SAMPLES
+    least_steps: int = STEPS_FOR_A_SLOPE
     steps: dict[int, list[Result]] = field(default_factory=dict)
     decision: Decision = Decision(False)
 
@@ -105,7 +106,7 @@ class Cell:
         """Whether another film would say something and its step fits into the cell's own budget."""
         if self.broken or self.next_samples > self.most_samples or self.seconds + self.next_seconds > self.budget:
             return False
-        return self.height < STEPS_FOR_A_SLOPE or self.decidable
+        return self.height < self.least_steps or self.decidable
 
     @property
     def decidable(self) -> bool:
