@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lightproof.certify import provenance, register
+from lightproof.certify import engine, register
 from lightproof.certify.balls import CannotCertify
 from lightproof.certify.engine import Certified, certify
 from lightproof.scene import PlaneFilm, PointsFilm, Scene
@@ -127,7 +127,8 @@ def _up(number: float) -> str:
 
 
 def _toml(cases: Mapping[str, Admitted]) -> str:
-    about = provenance.of(next(iter(cases.values())).scene)
+    first = next(iter(cases.values())).scene
+    about = engine.solver(first).provenance_of(first)
     lines = [f"formula = {_text(about.formula)}", f"source = {_text(about.source)}", f"citations = {json.dumps(about.citations)}"]
     for case, admitted in cases.items():
         lines += [

@@ -1,32 +1,42 @@
-"""Direct irradiance: the sum over lights of what reaches a receiver straight, at points and as means over film elements."""
+"""Direct irradiance: the sum over lights of what reaches a receiver straight, at points and as means over film elements.
+
+Each light, with what may stand before it, is known by one module of FIELDS, which has `covers(light, blockers)`,
+`provenance_of(light, blockers)` and `field(light, blockers, receiver)`; the first that covers it is asked.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from functools import cache
+from types import ModuleType
 
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import emitters, planes, quadrature
-from lightproof.certify.balls import Ball, CannotCertify, Element, Point, dot, exact, point, unit
+from lightproof.certify import emitters, planes, provenance, quadrature, shadows, unblocked
+from lightproof.certify.balls import Ball, CannotCertify, Element, dot, exact, point
 from lightproof.certify.emitters import Formula
+from lightproof.certify.field import Field, Shape
 from lightproof.certify.planes import Frame, Patch, Plane, Region
-from lightproof.certify.polygon import Parts, clip, convex_parts, lambert, visible
-from lightproof.scene import AreaLight, Scene
+from lightproof.certify.provenance import Provenance
+from lightproof.scene import AreaLight, PlaneFilm, PointsFilm, Scene
 
-Shape = geometry.Shape
+FIELDS: tuple[ModuleType, ...] = (shadows, unblocked)
 ROUNDING = exact(1e-15)  # of a corner's coordinates: how far above a plane a corner counts as lying on it
 
 
-@dataclass(frozen=True)
-class Field:
-    """Irradiance on one side of a plane from one light: `near(point)` is the formula that holds around a point of the plane,
-    up to the next of the planes `events`, where the light's visible shape changes (None: across curved surfaces too)."""
+def covers(scene_: Scene) -> bool:
+    """Whether the film is one that receives; what stands in the way of an answer, `solve` says."""
+    return isinstance(scene_.film, PlaneFilm | PointsFilm) and scene_.film.quantity == "irradiance"
 
-    near: Callable[[Point], Formula]
-    events: tuple[Plane, ...] | None = ()
+
+def kind(scene_: Scene) -> str:
+    """Points and smooth means are proven."""
+    return "enclosure"
+
+
+def provenance_of(scene_: Scene) -> Provenance:
+    """That of each light, joined."""
+    blockers = [surface.shape for surface in scene_.surfaces]
+    return provenance.joined(_module(light, blockers).provenance_of(light, blockers) for light in scene_.lights)
 
 
 def fields(scene_: Scene, receiver: Plane) -> list[Field]:
@@ -50,73 +60,14 @@ def _lies_on(shape: Shape, plane: Plane) -> bool:
 
 
 def _field(light: scene.Light, blockers: list[Shape], receiver: Plane) -> Field:
-    if isinstance(light, AreaLight) and isinstance(light.shape, geometry.Polygon):
-        return _polygon(light.shape, light.radiance, blockers, receiver)
-    if blockers:
-        raise CannotCertify(f"something may stand before light '{light.id}'; shadows are covered for polygon lights only")
-    if isinstance(light, AreaLight):
-        return _round(light, receiver)
-    formula = UNBLOCKED[type(light)](light, receiver)
-    return Field(lambda x: formula)
+    return _module(light, blockers).field(light, blockers, receiver)
 
 
-UNBLOCKED: dict[type, Callable[[scene.Light, Plane], Formula]] = {
-    scene.PointLight: emitters.point_light,
-    scene.DirectionalLight: emitters.beam,
-    scene.Environment: emitters.uniform_sky,
-    scene.OvercastSky: emitters.overcast_sky,
-    scene.SunDisc: emitters.sun,
-}
-
-
-def _round(light: AreaLight, receiver: Plane) -> Field:
-    shape = light.shape
-    if isinstance(shape, geometry.Sphere):
-        formula = emitters.sphere_light(shape, light.radiance, receiver)
-        return Field(lambda x: formula)
-    if isinstance(shape, geometry.Disk):
-        formula = emitters.disk_light(shape, light.radiance, receiver)
-        face = Plane(point(shape.normal), dot(point(shape.normal), point(shape.center)))
-        return Field(lambda x: formula if face.height(x) > 0 else emitters.dark, (face,))
-    raise CannotCertify(f"there is no formula for a {type(shape).__name__.lower()} light")
-
-
-def _polygon(shape: geometry.Polygon, radiance: float, blockers: list[Shape], receiver: Plane) -> Field:
-    """Lambert's formula for what the receiver sees of a polygon light above its horizon and past the blockers."""
-    corners = tuple(point(corner) for corner in shape.vertices)
-    face = planes.of(corners)
-    above = clip(corners, receiver.normal, receiver.offset)
-    between = tuple(filter(None, (_blocker(blocker, face, receiver) for blocker in blockers)))
-    light = convex_parts(above) if above else ()
-    normal = unit(receiver.normal)
-
-    @cache
-    def near(x: Point) -> Formula:
-        if face.height(x) <= 0:
-            return emitters.dark
-        loops = visible(light, between, x)
-        return lambda y: exact(radiance) * sum((count * lambert(loop, y, normal) for loop, count in loops.items()), arb(0))
-
-    return Field(near, (face, *_events(light, between)) if len(between) < 2 else None)
-
-
-def _blocker(shape: Shape, face: Plane, receiver: Plane) -> Parts:
-    """The part of a blocker between the receiver's plane and the light's."""
-    if not isinstance(shape, geometry.Polygon):
-        raise CannotCertify(f"a {type(shape).__name__.lower()} stands before a polygon light; only polygon blockers are covered")
-    corners = clip(tuple(point(corner) for corner in shape.vertices), receiver.normal, receiver.offset)
-    corners = clip(corners, face.normal, face.offset) if corners else ()
-    return convex_parts(corners) if corners else ()
-
-
-def _events(light: Parts, blockers: tuple[Parts, ...]) -> Iterable[Plane]:
-    """The planes in which a corner of the light is seen on an edge of the blocker, or the other way round, or the blocker is
-    seen edge-on."""
-    for _, corners in light:
-        for _, shadow in (part for blocker in blockers for part in blocker):
-            yield planes.of(shadow)
-            for points, edges in ((corners, shadow), (shadow, corners)):
-                yield from (planes.through(p, edges[i - 1], edges[i]) for p in points for i in range(len(edges)))
+def _module(light: scene.Light, blockers: list[Shape]) -> ModuleType:
+    for module in FIELDS:
+        if module.covers(light, blockers):
+            return module
+    raise CannotCertify(f"something may stand before light '{light.id}'; shadows are covered for polygon lights only")
 
 
 def mean_over(frame: Frame, lights: list[Field], region: Region) -> arb:
@@ -150,7 +101,7 @@ def solve(scene_: Scene) -> Element:
     if scene_.reflects:
         raise CannotCertify("light reflected between surfaces is covered inside one sphere only")
     film = scene_.film
-    if isinstance(film, scene.PointsFilm):
+    if isinstance(film, PointsFilm):
         return lambda element: at_point(scene_, film.positions[element], film.normals[element])
     frame = Frame.of(film)
     lights = fields(scene_, frame.plane)

@@ -1,57 +1,58 @@
-"""The first engine: from a scene to proven values."""
+"""The first engine: from a scene to proven values.
+
+Each module of SOLVERS knows one kind of scene: `covers(scene)` says whether it is the one, `solve(scene)` gives the value of
+an element as a ball, `kind(scene)` whether that ball is a proven "enclosure" or the estimate of a "quadrature", and
+`provenance_of(scene)` where the formula comes from. The first that covers a scene solves it, or says what it cannot do.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from types import ModuleType
 
 import numpy as np
 from flint import arb, ctx
 
-from lightproof.certify import coaxial, direct, floor_seen, sphere_interior
-from lightproof.certify.balls import PRECISION, CannotCertify, Element, exact
-from lightproof.scene import CameraFilm, Scene
+from lightproof.certify import coaxial_disks, direct, floor_seen, sphere_interior
+from lightproof.certify.balls import PRECISION, CannotCertify, exact
+from lightproof.scene import Scene
 
-SOLVERS: dict[str, Callable[[Scene], Element]] = {
-    "sphere-interior": sphere_interior.solve,
-    "floor-seen": floor_seen.solve,
-    "coaxial-disks": coaxial.solve,
-    "direct": direct.solve,
-}
+SOLVERS: tuple[ModuleType, ...] = (sphere_interior, floor_seen, coaxial_disks, direct)
 
 
 @dataclass(frozen=True)
 class Certified:
     """`value` and `uncertainty` (m,) of m film elements, in the film's unit: the true value is within `uncertainty` of `value`,
-    the nearest binary64 included. `engine` names the solver."""
+    the nearest binary64 included. `engine` names the solver; `kind` is "enclosure" where that is proven, "quadrature" where it
+    is estimated."""
 
     value: np.ndarray
     uncertainty: np.ndarray
     engine: str
+    kind: str
 
 
-def solver(scene: Scene) -> str:
-    """The name of the solver for a scene."""
-    if sphere_interior.covers(scene):
-        return "sphere-interior"
-    if isinstance(scene.film, CameraFilm):
-        return "floor-seen"
-    return "coaxial-disks" if coaxial.covers(scene) else "direct"
+def solver(scene: Scene) -> ModuleType:
+    """The module that knows a scene. Raises CannotCertify where none does."""
+    for module in SOLVERS:
+        if module.covers(scene):
+            return module
+    raise CannotCertify(f"films of {scene.film.quantity.replace('_', ' ')} are not covered")
 
 
 def certify(scene: Scene, elements: Iterable[int] | None = None, progress: Callable[[], None] = lambda: None) -> Certified:
     """Proven values of the film, or of the elements asked for; `progress` is called after each. Raises CannotCertify."""
-    name = solver(scene)
-    if scene.film.quantity == "solid_angle":
-        raise CannotCertify("films of solid angle are not covered")
+    module = solver(scene)
     with ctx.workprec(PRECISION):
-        element = SOLVERS[name](scene)
+        element = module.solve(scene)
         pairs = []
         for index in range(scene.size) if elements is None else elements:
             pairs.append(_rounded(element(index)))
             progress()
     value, uncertainty = np.array(pairs).reshape(-1, 2).T
-    return Certified(value, uncertainty, f"certify/{name}")
+    name = module.__name__.rpartition(".")[2].replace("_", "-")
+    return Certified(value, uncertainty, f"certify/{name}", module.kind(scene))
 
 
 def _rounded(ball: arb) -> tuple[float, float]:

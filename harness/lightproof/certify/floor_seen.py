@@ -8,13 +8,32 @@ from dataclasses import replace
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import direct, planes, quadrature
+from lightproof.certify import direct, planes, provenance, quadrature
 from lightproof.certify.balls import Ball, CannotCertify, Element, Point, Vector, cross, dot, exact, minus, plus, point, times
 from lightproof.certify.camera import Camera
+from lightproof.certify.emitters import Formula
+from lightproof.certify.field import Field
 from lightproof.certify.planes import Plane
+from lightproof.certify.provenance import Provenance
 from lightproof.scene import Scene
 
 Ray = tuple[Vector, Vector]  # origin and direction
+
+
+def covers(scene_: Scene) -> bool:
+    """Whether the film is a camera."""
+    return isinstance(scene_.film, scene.CameraFilm)
+
+
+def kind(scene_: Scene) -> str:
+    """Means of closed forms, by rules whose error is proven."""
+    return "enclosure"
+
+
+def provenance_of(scene_: Scene) -> Provenance:
+    """That of the light on the floor, seen."""
+    parts = [direct.provenance_of(replace(scene_, surfaces=()))]
+    return provenance.joined(parts, "; L = ρ E/π, averaged over each pixel")
 
 
 def solve(scene_: Scene) -> Element:
@@ -74,7 +93,7 @@ def _check_pixel(rays: list[Ray], floor: Plane, corners: list[Point]) -> None:
                 raise CannotCertify("a pixel sees past the floor")
 
 
-def _formulas(lights: list[direct.Field], hit: Callable[[Ball, Ball], Vector]) -> list[direct.Formula]:
+def _formulas(lights: list[Field], hit: Callable[[Ball, Ball], Vector]) -> list[Formula]:
     """The lights' formulas, which must hold over the whole pixel."""
     whole = hit(arb(0, 1), arb(0, 1))
     middle = tuple(exact(float(component)) for component in hit(arb(0), arb(0)))

@@ -1,12 +1,9 @@
-"""What a reference's formula is and where it comes from, by what the scene holds."""
+"""What a reference's formula is and where it comes from."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-
-from lightproof import geometry, scene
-from lightproof.certify.engine import solver
-from lightproof.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -63,31 +60,9 @@ GLOW = Provenance("L = L_e (1 + ρ + ρ² + …) = L_e/(1 − ρ), E = π L", SP
 LIT_SPHERE = Provenance(
     "E = I (r − c cos γ)/(r² + c² − 2 r c cos γ)^(3/2) + ρ I/(r² (1 − ρ)), L = ρ E/π", SPHERE_THEOREM, ("jacquez1955",))
 
-SHAPES = {geometry.Polygon: POLYGON, geometry.Disk: DISK, geometry.Sphere: SPHERE}
-LIGHTS = {
-    scene.PointLight: POINT,
-    scene.DirectionalLight: BEAM,
-    scene.Environment: SKY,
-    scene.OvercastSky: OVERCAST,
-    scene.SunDisc: SPHERE,
-}
 
-
-def of(scene_: Scene) -> Provenance:
-    """The provenance of a scene's reference: that of its lights, joined where there are several kinds."""
-    name = solver(scene_)
-    if name == "sphere-interior":
-        return LIT_SPHERE if scene_.lights else GLOW
-    if name == "coaxial-disks":
-        return DISK_SHADOW
-    parts = list(dict.fromkeys(_light(light, scene_) for light in scene_.lights))
-    seen = "; L = ρ E/π, averaged over each pixel" if name == "floor-seen" else ""
-    return Provenance("; ".join(part.formula for part in parts) + seen, " ".join(part.source for part in parts),
-                      tuple(dict.fromkeys(key for part in parts for key in part.citations)))
-
-
-def _light(light: scene.Light, scene_: Scene) -> Provenance:
-    if not isinstance(light, scene.AreaLight):
-        return LIGHTS[type(light)]
-    blocked = scene_.surfaces and not isinstance(scene_.film, scene.CameraFilm)
-    return SHADOW if blocked else SHAPES[type(light.shape)]
+def joined(parts: Iterable[Provenance], then: str = "") -> Provenance:
+    """Several provenances as one, each mentioned once; `then` ends the formula."""
+    once = list(dict.fromkeys(parts))
+    return Provenance("; ".join(part.formula for part in once) + then, " ".join(part.source for part in once),
+                      tuple(dict.fromkeys(key for part in once for key in part.citations)))

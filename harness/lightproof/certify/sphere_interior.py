@@ -7,10 +7,11 @@ from collections.abc import Callable
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import emitters, quadrature
+from lightproof.certify import emitters, provenance, quadrature
 from lightproof.certify.balls import Ball, CannotCertify, Element, Vector, cross, dot, exact, minus, plus, point, root, times
 from lightproof.certify.camera import Camera
 from lightproof.certify.planes import Plane
+from lightproof.certify.provenance import Provenance
 from lightproof.scene import Scene
 
 ROUNDING = exact(1e-15)  # of the radius: how far the binary64 position of a point of the wall may lie off it
@@ -19,6 +20,16 @@ ROUNDING = exact(1e-15)  # of the radius: how far the binary64 position of a poi
 def covers(scene_: Scene) -> bool:
     """Whether everything happens inside one sphere."""
     return [(type(surface.shape), surface.side) for surface in scene_.surfaces] == [(geometry.Sphere, "inside")]
+
+
+def kind(scene_: Scene) -> str:
+    """Closed forms, and means of them."""
+    return "enclosure"
+
+
+def provenance_of(scene_: Scene) -> Provenance:
+    """Where the formula comes from."""
+    return provenance.LIT_SPHERE if scene_.lights else provenance.GLOW
 
 
 def solve(scene_: Scene) -> Element:

@@ -14,9 +14,11 @@ from itertools import pairwise
 from flint import acb, arb
 
 from lightproof import geometry
-from lightproof.certify import direct, emitters
+from lightproof.certify import direct, emitters, provenance
 from lightproof.certify.balls import Ball, CannotCertify, Element, Number, arctan, cross, dot, exact, minus, point, root
+from lightproof.certify.field import Field
 from lightproof.certify.planes import Frame, Plane
+from lightproof.certify.provenance import Provenance
 from lightproof.scene import AreaLight, PlaneFilm, Scene, Surface
 
 GOAL = 2.0**-64  # of each piece: radiance times square metres
@@ -27,6 +29,16 @@ def covers(scene_: Scene) -> bool:
     things = (*scene_.lights, *scene_.surfaces)
     shapes = [type(thing.shape) for thing in things if isinstance(thing, AreaLight | Surface)]
     return isinstance(scene_.film, PlaneFilm) and len(things) == len(scene_.surfaces) + 1 and shapes == [geometry.Disk] * 2
+
+
+def kind(scene_: Scene) -> str:
+    """Rigorous integrals over the radius."""
+    return "enclosure"
+
+
+def provenance_of(scene_: Scene) -> Provenance:
+    """Where the formula comes from."""
+    return provenance.DISK_SHADOW
 
 
 @dataclass(frozen=True)
@@ -95,7 +107,7 @@ def solve(scene_: Scene) -> Element:
         raise CannotCertify("a blocker that reflects or emits light is not covered")
     axis = _check(frame, light.shape, blocker.shape)
     formula = emitters.disk_light(light.shape, light.radiance, frame.plane)
-    open_light = [direct.Field(lambda x: formula)]
+    open_light = [Field(lambda x: formula)]
     shadow = Shadow(*(_disk(shape, frame) for shape in (light.shape, blocker.shape)))
     hidden = cache(lambda column, row: _corner(shadow, *_offset(frame, axis, column, row)))
 
