@@ -1,7 +1,8 @@
 """Admit references: both engines, their agreement, the acceptance criteria, and the files.
 
-A suite's second engine is the script references/<id>.py, which shares no code with the first: its function
-`values(table, elements)` takes a scene as `Scene.to_table` gives it. The criteria are explained in references/README.md.
+A suite's second engine is a script in references/, which shares no code with the first: <id>.py, or one that lists the scene
+in its constant SCENES. Its function `values(table, elements)` takes a scene as `Scene.to_table` gives it. The criteria are
+explained in references/README.md.
 """
 
 from __future__ import annotations
@@ -12,29 +13,34 @@ import math
 import runpy
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
-from lightproof.certify import engine, register
+from lightproof import geometry
+from lightproof.certify import engine, provenance, register, sampling
 from lightproof.certify.balls import CannotCertify
 from lightproof.certify.engine import Certified, certify
-from lightproof.scene import PlaneFilm, PointsFilm, Scene
+from lightproof.scene import PointsFilm, Scene, Surface
 
-AT_POINTS, OF_MEANS, IN_SHADOWS = 1e-15, 1e-12, 1e-9  # largest uncertainty, relative to the film's largest value
+# Largest uncertainty, relative to the film's largest value: at points and of means, open, behind polygons and behind curves.
+AT_POINTS, AT_POINTS_BEHIND_CURVES = 1e-15, 1e-12
+OF_MEANS, IN_SHADOWS, IN_ROUND_SHADOWS = 1e-12, 1e-9, 1e-6
 BELOW_TOLERANCE = 1000  # times the uncertainty must fit into the scene's tolerance
-KIND = "enclosure"
 
 
 @dataclass(frozen=True)
 class Admitted:
-    """One case of a reference: values and uncertainties, and how well the second engine agrees, relative to `scale`."""
+    """One case of a reference: values and uncertainties, and how well the second engine agrees, relative to `scale`, on
+    `checked` of the elements."""
 
     scene: Scene
     certified: Certified
     second_engine: str
     agreement: float
+    checked: int
 
     @property
     def scale(self) -> float:
@@ -55,14 +61,28 @@ def admit(scene: Scene, folder: Path, progress: Callable[[], None] = lambda: Non
     engine covers the scene, or where an acceptance criterion fails. `progress` is called after each element.
     """
     certified = certify(scene, progress=progress)
-    script = folder / f"{scene.id}.py"
-    if script.is_file():
-        difference = float(np.abs(second(script, scene, range(scene.size)) - certified.value).max())
-        admitted = Admitted(scene, certified, script.name, difference / _scale(certified.value))
+    script = script_for(scene, folder)
+    if script:
+        elements = sampling.chosen(scene, certified.value, bool(_blockers(scene)))
+        difference = float(np.abs(second(script, scene, elements) - certified.value[elements]).max())
+        admitted = Admitted(scene, certified, script.name, difference / _scale(certified.value), len(elements))
     else:
-        admitted = Admitted(scene, certified, "none", math.nan)
+        admitted = Admitted(scene, certified, "none", math.nan, 0)
     _accept(admitted)
     return admitted
+
+
+def script_for(scene: Scene, folder: Path) -> Path | None:
+    """The second engine of a scene: the script of its name, or the one that lists it in SCENES; None without."""
+    own = folder / f"{scene.id}.py"
+    if own.is_file():
+        return own
+    return next((path for path in sorted(folder.glob("*.py")) if scene.id in _listed(path)), None)
+
+
+@cache
+def _listed(script: Path) -> tuple[str, ...]:
+    return tuple(runpy.run_path(str(script)).get("SCENES", ()))
 
 
 def second(script: Path, scene: Scene, elements: Iterable[int]) -> np.ndarray:
@@ -79,9 +99,18 @@ def limit(scene: Scene, value: np.ndarray) -> np.ndarray:
 
 
 def _class(scene: Scene) -> float:
+    blockers = _blockers(scene)
+    curved = any(not isinstance(surface.shape, geometry.Polygon) for surface in blockers)
     if isinstance(scene.film, PointsFilm):
-        return AT_POINTS
-    return IN_SHADOWS if scene.surfaces and isinstance(scene.film, PlaneFilm) else OF_MEANS
+        return AT_POINTS_BEHIND_CURVES if curved else AT_POINTS
+    if curved:
+        return IN_ROUND_SHADOWS
+    return IN_SHADOWS if blockers else OF_MEANS
+
+
+def _blockers(scene: Scene) -> list[Surface]:
+    """What only blocks."""
+    return [surface for surface in scene.surfaces if surface.reflectance == surface.radiance == 0]
 
 
 def _scale(value: np.ndarray) -> float:
@@ -127,8 +156,8 @@ def _up(number: float) -> str:
 
 
 def _toml(cases: Mapping[str, Admitted]) -> str:
-    first = next(iter(cases.values())).scene
-    about = engine.solver(first).provenance_of(first)
+    scenes = [admitted.scene for admitted in cases.values()]
+    about = provenance.joined(engine.solver(scene).provenance_of(scene) for scene in scenes)
     lines = [f"formula = {_text(about.formula)}", f"source = {_text(about.source)}", f"citations = {json.dumps(about.citations)}"]
     for case, admitted in cases.items():
         lines += [
@@ -137,10 +166,10 @@ def _toml(cases: Mapping[str, Admitted]) -> str:
             f'scene_digest = "{admitted.scene.digest}"',
             f'engine = "{admitted.certified.engine}"',
             f'second_engine = "{admitted.second_engine}"',
-            f'kind = "{KIND}"',
+            f'kind = "{admitted.certified.kind}"',
             f"agreement = {admitted.agreement!r}",
             f"uncertainty = {_up(float(admitted.uncertainty.max()) / admitted.scale)}",
-            f"elements_checked = {0 if admitted.second_engine == 'none' else admitted.scene.size}",
+            f"elements_checked = {admitted.checked}",
         ]
     return "\n".join(lines) + "\n"
 
