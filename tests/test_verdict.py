@@ -279,6 +279,12 @@ def test_a_sum_that_converges_by_fits_and_starts_is_undecided():
     assert outcomes(found) == ["undecided", "undecided"]
 
 
+def test_a_sum_that_converges_slowly_is_undecided():
+    """Errors that fall to 0.8 of themselves everywhere, as those of a midpoint sum over a light cut by the horizon may."""
+    found = judged({64: [LIGHT + 0.15 * TILE], 256: [LIGHT + 0.12 * TILE]}, deterministic=True)
+    assert outcomes(found) == ["undecided", "undecided"]
+
+
 def test_a_deterministic_method_that_aims_past_the_light_is_undecided():
     """A grid of directions so coarse that none meets the light in one tile; a method that aims at lights has no such excuse."""
     missed = np.where(TILE, 0, LIGHT)

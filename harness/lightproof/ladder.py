@@ -24,6 +24,7 @@ TILE_LEVEL = 0.004  # chance that any tile's or the mean's interval misses, at o
 ELEMENT_LEVEL = 0.001  # the same for all elements together
 WIDEST_VOTE = 10  # tolerances: an interval that noise makes wider does not vote
 SHRINKING = 0.7  # an error without noise that falls by less than this from step to step has stopped shrinking
+SETTLED = 0.1  # of its error: a film without noise that a step moved by less is not on its way to the right answer
 SAME_FILM = 1e-5  # of the scale: films without noise that agree so well at N and 4N are one answer
 TRIPLES = 1600  # (scene, case, method) that a suite may hold before TILE_LEVEL has to shrink
 POWER = 3  # standard errors beyond q at which a bias is seen nearly always
@@ -231,9 +232,9 @@ class Rung:
 
     def stopped_shrinking(self, before: Rung) -> np.ndarray:
         """Where the error without noise falls no longer, (J + 1 + n,): neither there nor, for sums over grids converge by fits
-        and starts, over the whole film, which has moved by less than errors that fall to SHRINKING of themselves do."""
+        and starts, over the whole film, which has settled."""
         moved = np.sqrt(((self.errors[0] - before.errors[0]) ** 2).mean())
-        settled = moved < (1 / SHRINKING - 1) * self.rmse
+        settled = moved < SETTLED * self.rmse
         return (np.abs(self.bias) > SHRINKING * np.abs(before.bias)) & settled
 
     def agrees(self, before: Rung) -> bool:
