@@ -32,7 +32,7 @@ PLAN = ("scenes", "methods", "tags", "budget", "cell_budget", "replicates", "thr
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Scenes, methods, budgets."""
     add = parser.add_argument
-    add("scenes", nargs="*", metavar="SCENE", help="id, id:case or path of a .toml file (default: every base case)")
+    add("scenes", nargs="*", metavar="SCENE", help="id, id:case or path of a .toml file (default: all that are quick)")
     add("--with", dest="methods", nargs="+", action="extend", default=[], metavar="METHOD",
         help="name, glob, module:Class or file.py:Class (default: each renderer's best configuration)")
     add("--tags", nargs="+", action="extend", default=[], metavar="TAG",

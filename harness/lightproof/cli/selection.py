@@ -14,7 +14,7 @@ from lightproof.scene import Scene
 from lightproof.scene_file import BASE
 from lightproof.suite import Suite
 
-NIGHTLY = "nightly"
+NIGHTLY, QUICK = "nightly", "quick"
 TARGET = re.compile(r"(?P<where>.+):(?P<cls>\w+)(?P<options>/.*)?")
 
 
@@ -47,19 +47,26 @@ def _own(where: str, cls: str, options: str | None) -> Entry:
 def scenes(names: Sequence[str], tags: Sequence[str], root: Suite) -> dict[Scene, Suite]:
     """The scenes that `names` and `tags` choose, each with the suite that holds its reference.
 
-    `names` are ids (the base case), `id:case` or paths of scene files; without names the base case of every scene, or every
-    case for the tag nightly. Other tags keep the scenes that carry one of them. Raises UsageError, SceneError.
+    `names` are ids (the base case), `id:case` or paths of scene files. Without names it is the base case of every scene that
+    carries one of the tags, or every case of every scene for the tag nightly; without tags too, of every quick scene, or of
+    all where the suite calls none quick. Raises UsageError, SceneError.
     """
-    for tag in tags:
-        if tag not in scene.TAGS:
-            raise unknown("tag", tag, scene.TAGS)
+    check_tags(tags)
     found = dict(_find(name, root) for name in names) if names else {each: root for each in root.scenes()}
-    wanted = set(tags) - {NIGHTLY}
+    quick = not names and not tags and any(QUICK in each.tags for each in found)
+    wanted = {QUICK} if quick else set(tags) - {NIGHTLY}
     kept = {each: home for each, home in found.items() if (not wanted or wanted & set(each.tags)) and _due(each, names, tags)}
     if not kept:
         raise UsageError(f"no scene carries the tag {' or '.join(sorted(wanted))}; 'lightproof list' shows the tags of each")
     _check_names(list(kept))
     return kept
+
+
+def check_tags(tags: Sequence[str]) -> None:
+    """Raises UsageError where nobody knows a tag."""
+    for tag in tags:
+        if tag not in scene.TAGS:
+            raise unknown("tag", tag, scene.TAGS)
 
 
 def _due(each: Scene, names: Sequence[str], tags: Sequence[str]) -> bool:
