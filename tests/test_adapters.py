@@ -12,17 +12,18 @@ import pytest
 from one_process import Shot
 
 from lightproof import geometry, scene_file, suite
-from lightproof.geometry import Cylinder, Disk, Polygon, Sphere
+from lightproof.geometry import Cap, Cylinder, Disk, Polygon, Sphere
 from lightproof.method import Unavailable
 from lightproof.renderers import importing, mesh, mitsuba, transport, views
 
 SUITE = suite.default()
 L_SHAPE = Polygon(((0, 0, 1), (3, 0, 1), (3, 1, 1), (1, 1, 1), (1, 2, 1), (0, 2, 1)))
-ROUND = {"disk": Disk((0.1, 0.2, 0.3), (1, 2, 2), 0.7), "cylinder": Cylinder((0.1, 0.2, 0.3), (1, 2, 2), 1.3, 0.7)}
+ROUND = {"disk": Disk((0.1, 0.2, 0.3), (1, 2, 2), 0.7), "cylinder": Cylinder((0.1, 0.2, 0.3), (1, 2, 2), 1.3, 0.7),
+         "cap": Cap((0.1, 0.2, 0.3), 0.7, (1, 2, 2), 110)}
 
 
 def test_meshes_keep_the_area():
-    """An L of area 4, a disk, a cylinder and a sphere of radius 0.7: their triangles have the same area, fronts outward."""
+    """An L of area 4, a disk, a cylinder, a cap and a sphere of radius 0.7: their triangles have the same area, fronts outward."""
     ball = mesh.tessellate(Sphere((0.1, 0.2, 0.3), 0.7))
     assert ball.area == pytest.approx(4 * np.pi * 0.49, rel=1e-12)
     assert mesh.tessellate(L_SHAPE).area == pytest.approx(4, rel=1e-12)

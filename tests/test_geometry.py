@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from lightproof import geometry
 from lightproof.checked import SceneError
-from lightproof.geometry import Cylinder, Disk, Polygon, Sphere
+from lightproof.geometry import Cap, Cylinder, Disk, Polygon, Sphere
 
 coordinates = st.floats(-1e3, 1e3, allow_subnormal=False).filter(lambda x: x == 0 or abs(x) > 1e-3)
 directions = st.tuples(coordinates, coordinates, coordinates).filter(any)
@@ -39,6 +39,22 @@ def test_areas():
     assert Disk([0, 0, 0], [0, 0, 5], 2).area == pytest.approx(4 * np.pi)
     assert Sphere([0, 0, 0], 2).area == pytest.approx(16 * np.pi)
     assert Cylinder([0, 0, 0], [0, 1, 0], 3, 2).area == pytest.approx(12 * np.pi)
+
+
+def test_two_caps_make_a_sphere():
+    """60 and 120 degrees about opposite axes: a quarter and three quarters of 16 pi m2, and only together a whole sphere."""
+    small, large = Cap([1, 2, 3], 2, [0, 3, 4], 60), Cap([1, 2, 3], 2, [0, -6, -8], 120)
+    assert (small.area, large.area) == (pytest.approx(4 * np.pi), pytest.approx(12 * np.pi))
+    assert small.completes(large) and large.completes(small)
+    others = [Cap([1, 2, 3], 2, [0, 6, 8], 120), Cap([1, 2, 3], 2, [0, -6, -8], 119.5), Cap([1, 2, 3], 2.1, [0, -6, -8], 120),
+              Cap([1, 2, 3], 2, [1e-12, -6, -8], 120)]
+    assert not any(small.completes(other) for other in others)
+
+
+@pytest.mark.parametrize("half_angle", [0, -10, 180, 200])
+def test_a_cap_is_neither_nothing_nor_a_whole_sphere(half_angle):
+    with pytest.raises(SceneError, match="greater than 0 and less than 180"):
+        Cap([0, 0, 0], 1, [0, 0, 1], half_angle)
 
 
 def test_polygon_front_is_the_counter_clockwise_side():

@@ -87,15 +87,15 @@ def to_number(value: Any) -> float:
     return value
 
 
-def number(above: float = -math.inf, least: float = -math.inf, most: float = math.inf,
+def number(above: float = -math.inf, least: float = -math.inf, most: float = math.inf, below: float = math.inf,
            default: Any = dataclasses.MISSING) -> Any:
-    """A field for one number in (above, most] and [least, most]."""
+    """A field for one number greater than `above`, from `least` to `most`, less than `below`."""
 
     def check(value: Any) -> float:
         value = to_number(value)
-        if not (value > above and least <= value <= most):
+        if not (above < value < below and least <= value <= most):
             low = f"greater than {above:g}" if above > -math.inf else f"at least {least:g}"
-            high = f" and at most {most:g}" if most < math.inf else ""
+            high = f" and at most {most:g}" if most < math.inf else f" and less than {below:g}" if below < math.inf else ""
             raise SceneError("", f"{value:g} is out of range; it must be {low}{high}")
         return value
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import combinations
 
 import numpy as np
@@ -99,8 +100,33 @@ class Cylinder(Checked):
         return float(2 * np.pi * self.radius * self.height)
 
 
-Shape = Polygon | Disk | Sphere | Cylinder
-SHAPES: dict[str, type] = {shape.TAG[1]: shape for shape in (Polygon, Disk, Sphere, Cylinder)}
+@dataclass(frozen=True)
+class Cap(Checked):
+    """The part of a sphere within `half_angle` [degrees] of `axis`, as seen from its centre; its front is the outside unless a
+    surface says `side = "inside"`."""
+
+    TAG = ("type", "cap")
+
+    center: Vec3 = vector()
+    radius: float = number(above=0)
+    axis: Vec3 = direction()
+    half_angle: float = number(above=0, below=180)
+
+    @property
+    def area(self) -> float:
+        """Area [m2]."""
+        return float(4 * np.pi * (self.radius * np.sin(np.radians(self.half_angle) / 2)) ** 2)
+
+    def completes(self, other: Cap) -> bool:
+        """Whether the two are exactly a whole sphere, each point of it once."""
+        a, b = ([Fraction(component) for component in cap.axis] for cap in (self, other))
+        opposite = all(a[i - 1] * b[i] == a[i] * b[i - 1] for i in range(3)) and sum(x * y for x, y in zip(a, b, strict=True)) < 0
+        whole = Fraction(self.half_angle) + Fraction(other.half_angle) == 180
+        return opposite and whole and (self.center, self.radius) == (other.center, other.radius)
+
+
+Shape = Polygon | Disk | Sphere | Cylinder | Cap
+SHAPES: dict[str, type] = {shape.TAG[1]: shape for shape in (Polygon, Disk, Sphere, Cylinder, Cap)}
 
 
 def unit(v: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ import hashlib
 import json
 import math
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -115,8 +116,8 @@ class Surface(Checked):
     side: str = checked.choice("outside", "inside", default="outside")
 
     def check(self) -> None:
-        if self.side == "inside" and not isinstance(self.shape, geometry.Sphere | geometry.Cylinder):
-            raise SceneError("side", "only a sphere or a cylinder has an inside; turn the vertices or the normal round")
+        if self.side == "inside" and not isinstance(self.shape, geometry.Sphere | geometry.Cylinder | geometry.Cap):
+            raise SceneError("side", "only a sphere, a cap or a cylinder has an inside; turn the vertices or the normal round")
 
 
 @dataclass(frozen=True)
@@ -234,7 +235,7 @@ class Scene:
             raise SceneError("id", f"'{duplicate}' names two things; ids must differ")
         if not self.lights and not any(surface.radiance for surface in self.surfaces):
             raise SceneError("light", "nothing shines; give a light, or a surface with a radiance of its own")
-        if self.max_bounces == "all" and (any(map(_white_ball, self.surfaces)) or _white_room(self.surfaces)):
+        if self.max_bounces == "all" and (_white_ball(self.surfaces) or _white_room(self.surfaces)):
             raise SceneError("max_bounces", 'a closed surface of reflectance 1 never loses light; give a number instead of "all"')
         object.__setattr__(self, "digest", _digest(self))
 
@@ -268,8 +269,11 @@ class Scene:
         return self.max_bounces != 0 and any(surface.reflectance > 0 for surface in self.surfaces)
 
 
-def _white_ball(surface: Surface) -> bool:
-    return surface.reflectance == 1 and surface.side == "inside" and isinstance(surface.shape, geometry.Sphere)
+def _white_ball(surfaces: tuple[Surface, ...]) -> bool:
+    """Whether a whole white sphere, or two white caps that make one, face inward."""
+    white = [surface.shape for surface in surfaces if surface.reflectance == 1 and surface.side == "inside"]
+    caps = [shape for shape in white if isinstance(shape, geometry.Cap)]
+    return any(isinstance(shape, geometry.Sphere) for shape in white) or any(a.completes(b) for a, b in combinations(caps, 2))
 
 
 def _white_room(surfaces: tuple[Surface, ...]) -> bool:

@@ -13,7 +13,7 @@ from lightproof.estimators.arcs import disk, disk_behind_disk
 from lightproof.estimators.compiled import strict, strict_kernel
 from lightproof.estimators.estimator import Estimator, spread
 from lightproof.estimators.lighting import from_bulbs
-from lightproof.estimators.limits import no_cylinders, no_reflections, no_solid_angle
+from lightproof.estimators.limits import no_caps, no_cylinders, no_reflections, no_solid_angle
 from lightproof.estimators.polygons import polygon
 from lightproof.estimators.tracing import receive, vector
 from lightproof.estimators.vectors import dot, norm, sub
@@ -95,7 +95,7 @@ class Analytic(Estimator):
     an element, and points need none."""
 
     deterministic = True
-    limits = (no_cylinders, no_solid_angle)
+    limits = (no_cylinders, no_caps, no_solid_angle)
 
     def unsupported(self, scene: Scene) -> str | None:
         if any(surface.side == "inside" for surface in scene.surfaces):

@@ -10,9 +10,12 @@ from lightproof.estimators.tracing import free, front_normal, vector
 from lightproof.estimators.vectors import along, dot, norm, scaled, sub, tangents
 from lightproof.estimators.world import (
     AREA,
+    CAP,
     CENTER,
+    COSINE,
     DISK,
     KIND,
+    NORMAL,
     PARALLELOGRAM,
     POINT,
     RADIANCE,
@@ -33,6 +36,9 @@ def spot(item, x, s, t):
     only the cap that faces x is drawn from."""
     if item[KIND] == SPHERE:
         return spot_on_sphere(item, x, s, t)
+    if item[KIND] == CAP:
+        n = around(vector(item, NORMAL), s * (1 - item[COSINE]), t)
+        return along(vector(item, CENTER), item[RADIUS], n), item[AREA]
     if item[KIND] == PARALLELOGRAM:
         a, b = s - 0.5, t - 0.5
     elif item[KIND] == DISK:
@@ -49,11 +55,15 @@ def spot_on_sphere(item, x, s, t):
     r = norm(away)
     axis = scaled(1 / r, away) if r > 0 else (0.0, 0.0, 1.0)
     height = max(r - radius, 0.0) / r if item[SIDE] > 0 else 2.0
-    down = s * height
+    return along(center, radius, around(axis, s * height, t)), 2 * math.pi * radius * radius * height
+
+
+@strict
+def around(axis, down, t):
+    """The unit vector that is `down` lower along `axis` than its tip, t turns about it."""
     side = math.sqrt(max(down * (2 - down), 0.0))
     e1, e2 = tangents(axis)
-    n = along(along(scaled(1 - down, axis), side * math.cos(2 * math.pi * t), e1), side * math.sin(2 * math.pi * t), e2)
-    return along(center, radius, n), 2 * math.pi * radius * radius * height
+    return along(along(scaled(1 - down, axis), side * math.cos(2 * math.pi * t), e1), side * math.sin(2 * math.pi * t), e2)
 
 
 @strict

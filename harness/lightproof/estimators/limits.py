@@ -12,6 +12,11 @@ def no_cylinders(scene: Scene) -> str | None:
     return f"our estimators have no cylinders ('{things[0].id}' is one)" if things else None
 
 
+def no_caps(scene: Scene) -> str | None:
+    things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(getattr(item, "shape", None), geometry.Cap)]
+    return f"it has no spherical caps ('{things[0].id}' is one); path can" if things else None
+
+
 def no_solid_angle(scene: Scene) -> str | None:
     return "it estimates irradiance and radiance, not solid angles" if scene.film.quantity == "solid_angle" else None
 

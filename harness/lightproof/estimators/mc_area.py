@@ -9,7 +9,7 @@ import numpy as np
 
 from lightproof.estimators.composed import Composed
 from lightproof.estimators.estimator import sampled, variance_of_mean
-from lightproof.estimators.limits import no_cylinders, no_glowing_inside, no_reflections, no_skies, no_solid_angle
+from lightproof.estimators.limits import no_caps, no_cylinders, no_glowing_inside, no_reflections, no_skies, no_solid_angle
 from lightproof.estimators.paths import Paths
 from lightproof.estimators.pieces import Piece, aimed
 from lightproof.estimators.points import Random
@@ -23,7 +23,7 @@ SEEDS = 2**24  # streams that one seed has for the pieces of lights
 class McArea(Composed):
     """Beside the kernel's views, what cameras see by paths of one reflection, which trace the first ray."""
 
-    limits = (no_cylinders, no_solid_angle, no_reflections, no_skies, no_glowing_inside)
+    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_skies, no_glowing_inside)
 
     def __init__(self, name: str, threads: int):
         super().__init__(name, threads)

@@ -9,7 +9,7 @@ import numpy as np
 from lightproof.estimators import directions
 from lightproof.estimators.composed import Composed
 from lightproof.estimators.estimator import sampled, variance_of_mean
-from lightproof.estimators.limits import no_bulbs, no_cylinders, no_reflections, no_solid_angle
+from lightproof.estimators.limits import no_bulbs, no_caps, no_cylinders, no_reflections, no_solid_angle
 from lightproof.estimators.meeting import Cosine, Uniform
 from lightproof.estimators.pieces import Piece, met
 from lightproof.estimators.points import Random
@@ -22,7 +22,7 @@ class McHemisphere(Composed):
     """Any direct light that fills a solid angle."""
 
     samples_lights = False
-    limits = (no_cylinders, no_solid_angle, no_reflections, no_bulbs)
+    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_bulbs)
     density: ClassVar[type[Uniform | Cosine]] = Uniform
 
     def seen(self, scene: Scene) -> View | None:

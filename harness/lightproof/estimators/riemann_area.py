@@ -7,7 +7,7 @@ import numpy as np
 from lightproof.estimators.compiled import strict, strict_kernel
 from lightproof.estimators.lamps import glowing
 from lightproof.estimators.lighting import from_bulbs, from_item
-from lightproof.estimators.limits import no_cylinders, no_reflections, no_skies, no_solid_angle
+from lightproof.estimators.limits import no_caps, no_cylinders, no_reflections, no_skies, no_solid_angle
 from lightproof.estimators.pieces import Piece, aimed
 from lightproof.estimators.points import Grid, grid
 from lightproof.estimators.riemann import Riemann
@@ -46,7 +46,7 @@ def estimate(items, skies, bulbs, film, elements, contact, side, light_side, out
 class RiemannArea(Riemann):
     """Direct light from everything that has an area; `samples` become two square grids, as near as squares allow."""
 
-    limits = (no_cylinders, no_solid_angle, no_reflections, no_skies)
+    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_skies)
 
     def build(self, scene: Scene) -> None:
         super().build(scene)

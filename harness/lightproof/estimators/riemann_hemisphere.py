@@ -9,7 +9,7 @@ import numpy as np
 
 from lightproof.estimators.compiled import strict, strict_kernel
 from lightproof.estimators.directions import cosine_power, oriented
-from lightproof.estimators.limits import no_bulbs, no_cylinders, no_reflections, no_solid_angle
+from lightproof.estimators.limits import no_bulbs, no_caps, no_cylinders, no_reflections, no_solid_angle
 from lightproof.estimators.meeting import Uniform
 from lightproof.estimators.pieces import Piece, met
 from lightproof.estimators.points import Grid, grid
@@ -48,7 +48,7 @@ class RiemannHemisphere(Riemann):
     """Direct light that fills a solid angle; `samples` become a square grid of the element times rings of directions."""
 
     samples_lights = False
-    limits = (no_cylinders, no_solid_angle, no_reflections, no_bulbs)
+    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_bulbs)
 
     def seen(self, scene: Scene) -> View | None:
         return view_from_outside(scene)

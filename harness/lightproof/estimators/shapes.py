@@ -58,11 +58,20 @@ class Sphere(NamedTuple):
     radius: float
 
 
+class Cap(NamedTuple):
+    """What of a sphere lies within the angle of this `cosine` of the unit vector `axis`, as seen from its centre."""
+
+    center: Vec3
+    radius: float
+    axis: Vec3
+    cosine: float
+
+
 Flat = Parallelogram | Triangle | Disk
 PER_PARAMETER = {Parallelogram: 1.0, Triangle: 0.5, Disk: np.pi}  # area of the parameters' domain
 
 
-def parts(shape: geometry.Shape) -> list[Flat | Sphere]:
+def parts(shape: geometry.Shape) -> list[Flat | Sphere | Cap]:
     """A shape of the scene, in pieces. Raises TypeError on a cylinder."""
     match shape:
         case geometry.Polygon():
@@ -72,6 +81,9 @@ def parts(shape: geometry.Shape) -> list[Flat | Sphere]:
             return [flat(Disk, np.array(shape.center), shape.radius * t, shape.radius * b)]
         case geometry.Sphere():
             return [Sphere(shape.center, shape.radius)]
+        case geometry.Cap():
+            axis = tuple(map(float, geometry.unit(shape.axis)))
+            return [Cap(shape.center, shape.radius, axis, float(np.cos(np.radians(shape.half_angle))))]
     raise TypeError(f"no pieces for a {type(shape).__name__}")
 
 
@@ -110,8 +122,10 @@ def flat(kind: type, center: np.ndarray, u: np.ndarray, v: np.ndarray) -> Flat:
     return kind(*(tuple(map(float, w)) for w in (center, u, v, geometry.unit(np.cross(u, v)), dual_u, dual_v)))
 
 
-def area(shape: Flat | Sphere) -> float:
+def area(shape: Flat | Sphere | Cap) -> float:
     """Area [m2]."""
+    if isinstance(shape, Cap):
+        return float(2 * np.pi * shape.radius**2 * (1 - shape.cosine))
     if isinstance(shape, Sphere):
         return float(4 * np.pi * shape.radius**2)
     return float(np.linalg.norm(np.cross(shape.u, shape.v))) * PER_PARAMETER[type(shape)]

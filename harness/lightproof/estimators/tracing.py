@@ -9,7 +9,9 @@ import numpy as np
 from lightproof.estimators.compiled import strict
 from lightproof.estimators.vectors import along, dot, scaled, sub, unit
 from lightproof.estimators.world import (
+    CAP,
     CENTER,
+    COSINE,
     DISK,
     DUAL_U,
     DUAL_V,
@@ -39,6 +41,8 @@ def distance(item, x, w, near):
     """Distance [in lengths of w] to where a ray meets the item beyond `near`; inf where it does not."""
     if item[KIND] == SPHERE:
         return sphere_distance(item, x, w, near)
+    if item[KIND] == CAP:
+        return cap_distance(item, x, w, near)
     normal, o = vector(item, NORMAL), sub(vector(item, CENTER), x)
     slope = dot(w, normal)
     if slope == 0:
@@ -60,17 +64,36 @@ def in_parameters(kind, s, t):
 
 
 @strict
-def sphere_distance(item, x, w, near):
+def sphere_crossings(item, x, w):
+    """Where a ray's line enters the sphere and where it leaves it; inf, inf where it does neither."""
     o = sub(vector(item, CENTER), x)
     w2, b = dot(w, w), dot(o, w)
     foot = sub(o, scaled(b / w2, w))
     rest = item[RADIUS] * item[RADIUS] - dot(foot, foot)
     if rest < 0:
-        return np.inf
+        return np.inf, np.inf
     half = math.sqrt(rest / w2)
-    if b / w2 - half > near:
-        return b / w2 - half
-    return b / w2 + half if b / w2 + half > near else np.inf
+    return b / w2 - half, b / w2 + half
+
+
+@strict
+def sphere_distance(item, x, w, near):
+    enter, leave = sphere_crossings(item, x, w)
+    return enter if enter > near else leave if leave > near else np.inf
+
+
+@strict
+def cap_distance(item, x, w, near):
+    enter, leave = sphere_crossings(item, x, w)
+    if enter > near and on_cap(item, along(x, enter, w)):
+        return enter
+    return leave if leave > near and on_cap(item, along(x, leave, w)) else np.inf
+
+
+@strict
+def on_cap(item, p):
+    """Whether a point of the sphere belongs to the cap."""
+    return dot(sub(p, vector(item, CENTER)), vector(item, NORMAL)) >= item[RADIUS] * item[COSINE]
 
 
 @strict
@@ -97,7 +120,7 @@ def free(items, x, d, contact):
 @strict
 def front_normal(item, x):
     """Unit normal of the item's front at its point x."""
-    if item[KIND] == SPHERE:
+    if item[KIND] == SPHERE or item[KIND] == CAP:
         return scaled(item[SIDE] / item[RADIUS], sub(x, vector(item, CENTER)))
     return vector(item, NORMAL)
 

@@ -1,8 +1,9 @@
 """A scene as arrays, for the kernels that trace rays through any scene: one row per piece of a surface or light.
 
 Columns of an item: kind, centre, u, v, normal, dual u, dual v (as in `shapes`), radius, radiance, reflectance, side (+1: the
-front is out, -1: in), area, whether its light is sampled point by point, whether it is a light. Rows of a sky: kind,
-radiance, direction, cosine of the half-angle. Rows of a bulb (point light or beam): kind, position or direction, strength.
+front is out, -1: in), area, whether its light is sampled point by point, whether it is a light; a cap has its axis for the
+normal and the cosine of its half-angle for dual u. Rows of a sky: kind, radiance, direction, cosine of the half-angle. Rows
+of a bulb (point light or beam): kind, position or direction, strength.
 """
 
 from __future__ import annotations
@@ -14,13 +15,14 @@ import numpy as np
 from lightproof import geometry
 from lightproof import scene as scenes
 from lightproof.estimators import shapes
-from lightproof.estimators.shapes import Disk, Parallelogram, Sphere, Triangle
+from lightproof.estimators.shapes import Cap, Disk, Parallelogram, Sphere, Triangle
 from lightproof.scene import Scene
 
 KIND, CENTER, U, V, NORMAL, DUAL_U, DUAL_V, RADIUS, RADIANCE, REFLECTANCE, SIDE, AREA, SAMPLED, LAMP, WIDTH = (
     0, 1, 4, 7, 10, 13, 16, 19, 20, 21, 22, 23, 24, 25, 26)  # fmt: skip
-KINDS = {Parallelogram: 0, Triangle: 1, Disk: 2, Sphere: 3}
-PARALLELOGRAM, TRIANGLE, DISK, SPHERE = KINDS.values()
+COSINE = DUAL_U
+KINDS = {Parallelogram: 0, Triangle: 1, Disk: 2, Sphere: 3, Cap: 4}
+PARALLELOGRAM, TRIANGLE, DISK, SPHERE, CAP = KINDS.values()
 UNIFORM, UPPER, SUN, OVERCAST = range(4)
 POINT, BEAM = range(2)
 RECEIVER, PERSPECTIVE, ORTHOGRAPHIC = range(3)
@@ -66,11 +68,13 @@ def size(film: scenes.Film, elements: np.ndarray, items: np.ndarray) -> float:
     return float(max(reach, items[:, RADIUS].max(initial=0))) or 1.0
 
 
-def item_row(item: Item, piece: shapes.Flat | Sphere, sample_surfaces: bool) -> np.ndarray:
+def item_row(item: Item, piece: shapes.Flat | Sphere | Cap, sample_surfaces: bool) -> np.ndarray:
     row = np.zeros(WIDTH)
     row[KIND] = KINDS[type(piece)]
-    if isinstance(piece, Sphere):
+    if isinstance(piece, Sphere | Cap):
         row[CENTER:U], row[RADIUS] = piece.center, piece.radius
+        if isinstance(piece, Cap):
+            row[NORMAL:DUAL_U], row[COSINE] = piece.axis, piece.cosine
     else:
         row[CENTER:RADIUS] = np.concatenate([np.array(field) for field in piece])
     row[RADIANCE] = item.radiance

@@ -8,9 +8,10 @@ from functools import cache
 import numpy as np
 
 from lightproof import geometry
-from lightproof.geometry import Cylinder, Disk, Polygon, Shape, Sphere
+from lightproof.geometry import Cap, Cylinder, Disk, Polygon, Shape, Sphere
 
 CIRCLE = 1024  # corners of a circle; its area is off by 6e-6
+MERIDIANS, PARALLELS = 256, 64  # of a cap
 SPHERE = 6  # subdivisions of the icosahedron: 81,920 triangles, within 1e-4 of the radius
 RIGHT = 1e-9  # how far, of its size, a rectangle's corner may be off
 GOLDEN = (1 + 5**0.5) / 2
@@ -62,6 +63,8 @@ def tessellate(shape: Shape, inside: bool = False) -> Mesh:
             return _sphere(shape, inside)
         case Cylinder():
             return _cylinder(shape, inside)
+        case Cap():
+            return _cap(shape, inside)
 
 
 def is_rectangle(corners: np.ndarray) -> bool:
@@ -96,8 +99,8 @@ def _is_ear(flat: np.ndarray, left: list[int], i: int) -> bool:
     return not any(all(geometry.turn(flat[p], flat[q], point) >= 0 for p, q in ((a, b), (b, c), (c, a))) for point in others)
 
 
-def _circle() -> np.ndarray:
-    angles = 2 * np.pi * np.arange(CIRCLE) / CIRCLE
+def _circle(corners: int = CIRCLE) -> np.ndarray:
+    angles = 2 * np.pi * np.arange(corners) / corners
     return np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
@@ -117,6 +120,22 @@ def _cylinder(cylinder: Cylinder, inside: bool) -> Mesh:
     triangles = np.vstack([np.stack([here, following, following + CIRCLE], axis=1),
                            np.stack([here, following + CIRCLE, here + CIRCLE], axis=1)])
     mesh = Mesh(np.vstack([base, base + cylinder.height * geometry.unit(cylinder.axis)]), triangles)
+    return mesh.flipped() if inside else mesh
+
+
+def _cap(cap: Cap, inside: bool) -> Mesh:
+    """Rings of `MERIDIANS` corners around a pole."""
+    polar = np.radians(cap.half_angle) * np.arange(1, PARALLELS + 1)[:, None] / PARALLELS
+    spokes = _circle(MERIDIANS) @ np.stack(geometry.tangents(cap.axis))
+    rings = np.cos(polar)[..., None] * geometry.unit(cap.axis) + np.sin(polar)[..., None] * spokes
+    here = np.arange(MERIDIANS)
+    following = np.roll(here, -1)
+    strip = np.vstack([np.stack([here, here + MERIDIANS, following + MERIDIANS], axis=1),
+                       np.stack([here, following + MERIDIANS, following], axis=1)])
+    strips = [strip + 1 + ring * MERIDIANS for ring in range(PARALLELS - 1)]
+    fan = np.stack([np.zeros(MERIDIANS, int), here + 1, following + 1], axis=1)
+    mesh = Mesh(np.vstack([geometry.unit(cap.axis)[None], rings.reshape(-1, 3)]), np.vstack([fan, *strips]))
+    mesh = Mesh(np.array(cap.center) + np.sqrt(cap.area / mesh.area) * mesh.vertices, mesh.triangles)
     return mesh.flipped() if inside else mesh
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lightproof import geometry
-from lightproof.geometry import Cylinder, Disk, Polygon, Shape, Sphere
+from lightproof.geometry import Cap, Cylinder, Disk, Polygon, Shape, Sphere
 from lightproof.renderers import mesh
 from lightproof.renderers.views import pose
 
@@ -27,8 +27,8 @@ def build(mi: ModuleType, shape: Shape, content: dict[str, Any], inside: bool = 
             return {"type": "disk", "to_world": frame(mi, shape.center, shape.radius * t, shape.radius * b), **content}
         case Polygon() if mesh.is_rectangle(np.array(shape.vertices)):
             return rectangle(mi, np.array(shape.vertices), content)
-        case Polygon():
-            return triangles(mi, mesh.tessellate(shape), content)
+        case Polygon() | Cap():
+            return triangles(mi, mesh.tessellate(shape, inside), content)
 
 
 def rectangle(mi: ModuleType, corners: np.ndarray, content: dict[str, Any]) -> dict[str, Any]:

@@ -65,6 +65,9 @@ class View:
 def unsupported(scene: Scene) -> str | None:
     """Why no camera can fill this film, or None."""
     film = scene.film
+    caps = [item.id for item in (*scene.lights, *scene.surfaces) if isinstance(getattr(item, "shape", None), geometry.Cap)]
+    if caps:
+        return f"renderers are given no spherical caps yet ('{caps[0]}' is one)"
     if film.quantity == "solid_angle":
         return "renderers give no solid angles"
     if isinstance(film, PlaneFilm) and abs(geometry.unit(film.u) @ geometry.unit(film.v)) > SQUARE:

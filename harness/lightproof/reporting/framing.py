@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lightproof import geometry
-from lightproof.geometry import Polygon, Sphere
+from lightproof.geometry import Cap, Polygon, Sphere
 from lightproof.renderers import mesh
 from lightproof.scene import AreaLight, CameraFilm, PlaneFilm, PointLight, Scene
 
@@ -49,11 +49,11 @@ def towards_viewer() -> np.ndarray:
 
 
 def region(scene: Scene) -> Box:
-    """The box around film, lights and spheres: what a picture of the scene is about."""
+    """The box around film, lights, spheres and caps: what a picture of the scene is about."""
     points = [_film_points(scene.film)]
     points += [mesh.tessellate(light.shape).vertices for light in scene.lights if isinstance(light, AreaLight)]
     points += [np.array([light.position]) for light in scene.lights if isinstance(light, PointLight)]
-    points += [mesh.tessellate(surface.shape).vertices for surface in scene.surfaces if isinstance(surface.shape, Sphere)]
+    points += [mesh.tessellate(surface.shape).vertices for surface in scene.surfaces if isinstance(surface.shape, Sphere | Cap)]
     every = np.concatenate(points)
     box = Box(every.min(axis=0), every.max(axis=0))
     return box if box.size else Box(box.low - 0.5, box.high + 0.5)

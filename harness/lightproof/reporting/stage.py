@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from lightproof import geometry
-from lightproof.geometry import Disk, Polygon, Shape, Sphere
+from lightproof.geometry import Cap, Disk, Polygon, Shape, Sphere
 from lightproof.renderers import mesh, mitsuba_shapes
 from lightproof.reporting import framing
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, Light, PlaneFilm, PointLight, PointsFilm, Scene, Surface
@@ -90,7 +90,7 @@ class Stage:
         content = paint(colour)
         if surface.radiance and self.lit:
             content["emitter"] = {"type": "area", "radiance": warm(surface.radiance)}
-        if surface.side == "inside" and isinstance(surface.shape, Sphere):
+        if surface.side == "inside" and isinstance(surface.shape, Sphere | Cap):
             self._bowl(surface.shape, content)
         elif isinstance(surface.shape, Polygon):
             self._sheet(framing.clipped(surface.shape, self.box.grown(framing.BEYOND)), content)
@@ -102,8 +102,8 @@ class Stage:
         if len(corners) >= 3:
             self._triangles(mesh.tessellate(Polygon(tuple(map(tuple, corners)))), content)
 
-    def _bowl(self, sphere: Sphere, content: dict[str, Any]) -> None:
-        """A sphere cut open: its inner face, and the rim of the cut."""
+    def _bowl(self, sphere: Sphere | Cap, content: dict[str, Any]) -> None:
+        """A sphere, or a part of one, cut open: its inner face, and the rim of the cut."""
         towards = framing.towards_viewer()
         edge = np.array(sphere.center) + OPEN * sphere.radius * towards
         self._triangles(_cut(mesh.tessellate(sphere, inside=True), edge, towards), content)
