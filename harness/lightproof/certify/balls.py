@@ -11,7 +11,7 @@ from typing import Any
 
 from flint import acb, arb, fmpq
 
-PRECISION = 128  # bits
+PRECISION = 128  # bits to begin with
 
 Rational = fmpq
 Ball = arb | acb
@@ -23,6 +23,10 @@ Element = Callable[[int], arb]  # index of a film element -> its value
 
 class CannotCertify(Exception):
     """There is no proven answer for this scene; the message says what stands in the way."""
+
+
+class Undecided(CannotCertify):
+    """Balls too wide to tell on which side of an event a receiver is: more precision may help."""
 
 
 def exact(number: float) -> Rational:

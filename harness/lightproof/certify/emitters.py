@@ -95,7 +95,7 @@ def _above(height: arb, radius: Number) -> str:
         return "cut"
     if height <= -radius:
         return ""
-    raise CannotCertify("the light touches the receiver's horizon too closely to tell on which side it is")
+    raise balls.Undecided("the light touches the receiver's horizon too closely to tell on which side it is")
 
 
 def _sphere(radius: Number, squared: Ball, height: arb, above: str) -> Ball:

@@ -7,17 +7,21 @@ an element as a ball, `kind(scene)` whether that ball is a proven "enclosure" or
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cache
 from types import ModuleType
 
 import numpy as np
 from flint import arb, ctx
 
 from lightproof.certify import coaxial_disks, direct, floor_seen, sphere_interior
-from lightproof.certify.balls import PRECISION, CannotCertify, exact
-from lightproof.scene import Scene
+from lightproof.certify.balls import PRECISION, CannotCertify, Element, Undecided, exact
+from lightproof.scene import PointsFilm, Scene
 
+MOST_PRECISION = 4096  # bits
+NARROW = 60  # bits of a value at a point that a ball has to give
 SOLVERS: tuple[ModuleType, ...] = (sphere_interior, floor_seen, coaxial_disks, direct)
 
 
@@ -44,15 +48,32 @@ def solver(scene: Scene) -> ModuleType:
 def certify(scene: Scene, elements: Iterable[int] | None = None, progress: Callable[[], None] = lambda: None) -> Certified:
     """Proven values of the film, or of the elements asked for; `progress` is called after each. Raises CannotCertify."""
     module = solver(scene)
-    with ctx.workprec(PRECISION):
-        element = module.solve(scene)
-        pairs = []
-        for index in range(scene.size) if elements is None else elements:
-            pairs.append(_rounded(element(index)))
-            progress()
+    solution = cache(lambda bits: module.solve(scene))  # at each working precision anew
+    narrow = NARROW if isinstance(scene.film, PointsFilm) else 0
+    pairs = []
+    for index in range(scene.size) if elements is None else elements:
+        pairs.append(_settled(solution, index, narrow))
+        progress()
     value, uncertainty = np.array(pairs).reshape(-1, 2).T
     name = module.__name__.rpartition(".")[2].replace("_", "-")
     return Certified(value, uncertainty, f"certify/{name}", module.kind(scene))
+
+
+def _settled(solution: Callable[[int], Element], index: int, narrow: int, bits: int = PRECISION,
+             width: float | arb = math.inf) -> tuple[float, float]:
+    """An element's value and bound at the first precision, of `bits` or more, that gives `narrow` bits of the value, or that
+    gives no ball much narrower than the `width` of the one before. Raises CannotCertify."""
+    with ctx.workprec(bits):
+        try:
+            ball = arb(solution(bits)(index))
+        except Undecided:
+            if bits >= MOST_PRECISION:
+                raise
+            ball = arb("nan")
+        settled = ball.is_exact() or ball.rel_accuracy_bits() >= narrow or ball.rad() > width / 2
+        if bits >= MOST_PRECISION or (ball.is_finite() and settled):
+            return _rounded(ball)
+    return _settled(solution, index, narrow, 2 * bits, ball.rad())
 
 
 def _rounded(ball: arb) -> tuple[float, float]:
@@ -61,5 +82,7 @@ def _rounded(ball: arb) -> tuple[float, float]:
     if not ball.is_finite():
         raise CannotCertify("the formula is singular at some receiver: in line with an edge, or on a light")
     value = float(ball.mid())
+    if math.isinf(value):
+        raise CannotCertify("a value exceeds what a binary64 can hold; give less light or smaller lengths")
     error = (ball - exact(value)).abs_upper()
     return value, float(np.nextafter(float(error), np.inf)) if error > 0 else 0.0
