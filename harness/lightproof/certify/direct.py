@@ -11,7 +11,7 @@ from types import ModuleType
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import emitters, planes, provenance, quadrature, shadows, unblocked
+from lightproof.certify import emitters, planes, provenance, quadrature, shadows, skies, unblocked
 from lightproof.certify.balls import Ball, CannotCertify, Element, dot, exact, point
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
@@ -19,7 +19,7 @@ from lightproof.certify.planes import Frame, Patch, Plane, Region
 from lightproof.certify.provenance import Provenance
 from lightproof.scene import AreaLight, PlaneFilm, PointsFilm, Scene
 
-FIELDS: tuple[ModuleType, ...] = (shadows, unblocked)
+FIELDS: tuple[ModuleType, ...] = (shadows, skies, unblocked)
 ROUNDING = exact(1e-15)  # of a corner's coordinates: how far above a plane a corner counts as lying on it
 
 
@@ -45,11 +45,11 @@ def fields(scene_: Scene, receiver: Plane) -> list[Field]:
         if surface.radiance > 0:
             raise CannotCertify(f"surface '{surface.id}' emits light of its own; give it as an area light")
     lights = [light for light in scene_.lights if isinstance(light, AreaLight)]
-    shapes = {item.id: item.shape for item in (*lights, *scene_.surfaces) if not _lies_on(item.shape, receiver)}
+    shapes = {item.id: item.shape for item in (*lights, *scene_.surfaces) if not lies_on(item.shape, receiver)}
     return [_field(light, [shape for name, shape in shapes.items() if name != light.id], receiver) for light in scene_.lights]
 
 
-def _lies_on(shape: Shape, plane: Plane) -> bool:
+def lies_on(shape: Shape, plane: Plane) -> bool:
     """Whether a polygon has no part in front of the plane, but for the rounding of its corners: it then blocks nothing."""
     if not isinstance(shape, geometry.Polygon):
         return False
