@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -11,7 +12,8 @@ import pytest
 
 from lightproof import baseline, gate, suite
 from lightproof.baseline import BaselineError, State
-from lightproof.cli import main
+from lightproof.cli import checkup, main
+from lightproof.cli import gate as command
 from lightproof.gate import Gate
 
 GOOD = State("point-light", "base", "mc-area", "pass", 64, 6e-4, 0.03, 16)
@@ -68,6 +70,14 @@ def test_a_missing_baseline_says_how_to_make_one(tmp_path, capsys):
     assert "gate --run" in capsys.readouterr().err
 
 
+@pytest.fixture(scope="module", autouse=True)
+def checkup_of_the_suite():
+    """Left out here, but where a test asks for it: it takes some seconds each time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(command, "checkup", lambda scenes: checkup.Checkup((), 0, 0, 0))
+        yield
+
+
 @pytest.fixture(scope="module")
 def accepted(tmp_path_factory):
     """Point light by mc-area and analytic, measured, judged, and accepted."""
@@ -86,6 +96,22 @@ def test_nothing_changed_passes_and_leaves_the_baseline_alone(accepted, tmp_path
     assert accepted.read_bytes() == before
     assert (tmp_path / "baseline.diff").read_text() == ""
     assert "0 worse" in capsys.readouterr().out
+
+
+def test_a_stale_reference_fails_the_gate(accepted, tmp_path, monkeypatch, capsys):
+    """Every row is as good as the baseline, but another scene has changed since its reference was made."""
+    monkeypatch.setattr(command, "checkup", checkup.checkup)
+    root = tmp_path / "suite"
+    for folder, suffixes in (("scenes", ("toml",)), ("references", ("csv", "toml"))):
+        (root / folder).mkdir(parents=True)
+        for name in ("point-light", "knife-edge"):
+            for suffix in suffixes:
+                shutil.copy(suite.default().root / folder / f"{name}.{suffix}", root / folder)
+    changed = root / "scenes/knife-edge.toml"
+    changed.write_text(changed.read_text().replace("radiance = ", "radiance = 1"))
+    assert main(["gate", "--baseline", str(accepted), "--suite", str(root), "--out", str(tmp_path / "state")]) == 1
+    out = capsys.readouterr().out
+    assert "knife-edge.toml: the reference of case 'base' was made for another version" in out and " 0 worse" in out
 
 
 def test_a_noisier_method_fails_and_the_difference_is_written(accepted, tmp_path, capsys):

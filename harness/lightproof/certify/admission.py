@@ -57,9 +57,16 @@ class Admitted:
 def admit(scene: Scene, folder: Path, progress: Callable[[], None] = lambda: None) -> Admitted:
     """The reference of one scene, from both engines; `folder` is the suite's references/.
 
-    Without a second script the first engine stands alone, its values being proven enclosures. Raises CannotCertify where no
-    engine covers the scene, or where an acceptance criterion fails. `progress` is called after each element.
+    Without a second script the first engine stands alone. Raises CannotCertify, with the scene's name, where no engine covers
+    the scene, or where an acceptance criterion fails. `progress` is called after each element of the first engine.
     """
+    try:
+        return _admit(scene, folder, progress)
+    except CannotCertify as reason:
+        raise CannotCertify(f"{scene.name}: {reason}") from None
+
+
+def _admit(scene: Scene, folder: Path, progress: Callable[[], None]) -> Admitted:
     certified = certify(scene, progress=progress)
     script = script_for(scene, folder)
     if script:
@@ -123,7 +130,7 @@ def _accept(admitted: Admitted) -> None:
     value, excess = admitted.certified.value, admitted.uncertainty
     over = np.flatnonzero(~(excess <= limit(admitted.scene, value)))
     if over.size:
-        raise CannotCertify(f"{admitted.scene.name}: the uncertainty of element {over[0]}, {excess[over[0]]:.2g}, exceeds"
+        raise CannotCertify(f"the uncertainty of element {over[0]}, {excess[over[0]]:.2g}, exceeds"
                             f" {limit(admitted.scene, value)[over[0]]:.2g} (first engine"
                             f" {admitted.certified.uncertainty[over[0]]:.2g}, {admitted.second_engine} differs by"
                             f" {admitted.agreement * admitted.scale:.2g} at most)")

@@ -1,4 +1,4 @@
-"""judge the suite with fixed seeds against the accepted state: has anything become worse?"""
+"""check the references, then judge the suite with fixed seeds against the accepted state: has anything become worse?"""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from rich.markup import escape
 
 from lightproof import baseline, gate, machine, store, suite
 from lightproof.baseline import Key, State
+from lightproof.cli.checkup import checkup
 from lightproof.cli.progress import Display
 from lightproof.cli.run import count
-from lightproof.cli.status import UsageError
+from lightproof.cli.status import FAILED, UsageError
 from lightproof.gate import Gate, Report
 from lightproof.suite import Suite
 
@@ -39,6 +40,8 @@ def run(options: argparse.Namespace) -> int:
     accepted = {} if options.record and not options.baseline.exists() else baseline.read(options.baseline)
     store.check_writable(options.out)
     home = Suite(options.suite) if options.suite else suite.default()
+    references = checkup((scene, home) for scene in home.scenes())
+    console.print("\n".join([*references.complaints, references.summary]), markup=False)
     with Display(console) as display:
         judged = Gate(home, options.out, options.threads, display.show)
         if options.record:
@@ -47,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
             report = judged.check(_selected(accepted, options.scenes, options.methods))
     _print(report, console)
     _propose(report, accepted, options.baseline, options.out, console)
-    return report.exit_status
+    return FAILED if references.complaints else report.exit_status
 
 
 def _selected(accepted: Mapping[Key, State], scenes: Sequence[str], methods: Sequence[str]) -> dict[Key, State]:
