@@ -229,7 +229,7 @@ def test_round_shadows(radius):
     table["surface"][0]["shape"]["radius"] = radius
     table["film"]["resolution"] = [4, 3]
     second = runpy.run_path(str(SECOND / "disk-blocker.py"))["values"](table, [0, 5])
-    assert certify(scene_file.from_table(table, "test"), [0, 5]).value == pytest.approx(second, rel=1e-10)
+    assert certify(scene_file.from_table(table, "test"), [0, 5]).value == pytest.approx(second, rel=1e-13)
 
 
 def test_a_camera_straight_above_sees_the_film_below_it():
@@ -256,10 +256,6 @@ GLOBE = {"id": "wall", "reflectance": 0.5, "radiance": 1.0, "side": "inside",
     (([lamp()], FILM, [blocker(level(p, 0.6), f"p{i}") for i, p in enumerate(L_PARTS)]), "shadows of several blockers"),
     (([lamp()], FILM, [MIRROR], 1), "reflected between surfaces"),
     (([lamp()], FILM, [MIRROR | {"radiance": 1.0}]), "emits light of its own"),
-    (([lamp()], CAMERA | {"fov": 120}, [FLOOR], 1), "past the floor"),
-    (([lamp()], CAMERA | {"origin": [0, -0.5, 2]}, [FLOOR], 1), "between the camera and the floor"),
-    (([lamp()], ABOVE, [FLOOR], 1), "between the camera and the floor"),
-    (([lamp()], ABOVE | {"origin": [0, -0.2, 0.2]}, [FLOOR], 1), "behind the floor"),
     (([lamp()], at([0.1, 0, 0]), [BALL]), "only polygon blockers"),
     (([lamp() | {"shape": BALL["shape"]}], at([0, 0, 0.6], [0, 0, 1])), "inside a sphere light"),
     (([], CAMERA | {"origin": [0, 0.1, 1.5]}, [GLOBE]), "does not lie inside"),

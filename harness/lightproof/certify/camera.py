@@ -1,41 +1,107 @@
-"""A camera's pixels in balls: the ray through any position of a pixel, analytic in that position."""
+"""A camera in exact numbers, and what it sees of a plane.
+
+A film position (x, y) is that of the ray through x `right` + y `up`, two exact directions whose lengths have no square root
+in them: everything that the camera sees is then bounded by lines in exact numbers. Roots and tangents enter in one place,
+the pixels' size. A `pixel` takes the middle of that ball for it, and `blur` bounds what that changes of a pixel's mean.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from flint import arb
+from flint import arb, fmpq
 
-from lightproof.certify.balls import Ball, Point, Vector, cross, exact, minus, plus, point, times, unit
+from lightproof.certify import planes
+from lightproof.certify.balls import Ball, Number, Point, Rational, Vector, cross, dot, exact, minus, plus, point, root, times
+from lightproof.certify.planes import Line, Plane, Region
 from lightproof.scene import CameraFilm
+
+Ray = tuple[Vector, Vector]  # start and direction, of any length
 
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole or orthographic camera."""
+    """A pinhole or orthographic camera; `half` is how far along x and how far along y half its width reaches."""
 
-    film: CameraFilm
+    columns: int
+    rows: int
+    parallel: bool
     origin: Point
-    right: Vector
-    up: Vector
-    forward: Vector
-    half: arb
+    right: Point
+    up: Point
+    forward: Point
+    half: tuple[arb, arb]
 
     @classmethod
     def of(cls, film: CameraFilm) -> Camera:
-        """The camera of a film; `half` is half its width, as a tangent or in metres."""
-        forward = unit(minus(point(film.target), point(film.origin)))
-        right = unit(cross(forward, point(film.up)))
-        half = (arb.pi() * exact(film.fov) / 360).tan() if film.projection == "perspective" else exact(film.width) / 2
-        return cls(film, point(film.origin), right, cross(right, forward), forward, arb(half))
+        """The camera of a film."""
+        forward = minus(point(film.target), point(film.origin))
+        right = cross(forward, point(film.up))
+        up = cross(right, forward)
+        parallel = film.projection == "orthographic"
+        far = arb(exact(film.width) / 2) if parallel else root(dot(forward, forward)) * (arb.pi() * exact(film.fov) / 360).tan()
+        half = (far / root(dot(right, right)), far / root(dot(up, up)))
+        return cls(*film.resolution, parallel, point(film.origin), right, up, forward, half)
 
-    def ray(self, element: int, s: Ball, t: Ball) -> tuple[Vector, Vector]:
-        """Origin and direction (of any length) through position (s, t) of a pixel's square, both from -1 to 1, t upwards."""
-        columns, rows = self.film.resolution
-        row, column = divmod(element, columns)
-        x = self.half * (2 * column + 1 + s - columns) / columns
-        y = self.half * (rows - 2 * row - 1 + t) / columns
+    def ray(self, x: Number, y: Number) -> Ray:
+        """The ray through a film position."""
         offset = plus(times(self.right, x), times(self.up, y))
-        if self.film.projection == "orthographic":
-            return plus(self.origin, offset), self.forward
-        return self.origin, plus(self.forward, offset)
+        return (plus(self.origin, offset), self.forward) if self.parallel else (self.origin, plus(self.forward, offset))
+
+    def within(self, element: int, s: Ball, t: Ball) -> Ray:
+        """The ray through position (s, t) of a pixel's square, both from -1 to 1, t upwards."""
+        row, column = divmod(element, self.columns)
+        x = self.half[0] * (2 * column + 1 + s - self.columns) / self.columns
+        return self.ray(x, self.half[1] * (self.rows - 2 * row - 1 + t) / self.columns)
+
+    def pixel(self, element: int) -> Region:
+        """The film positions of a pixel, but for a part `blur` of its area; counter-clockwise as the camera sees it."""
+        row, column = divmod(element, self.columns)
+        width, height = (fmpq(half.mid().fmpq()) / self.columns for half in self.half)
+        left, right = ((2 * column - self.columns + i) * width for i in (0, 2))
+        low, high = ((self.rows - 2 * row - i) * height for i in (2, 0))
+        return (left, low), (right, low), (right, high), (left, high)
+
+    @property
+    def blur(self) -> arb:
+        """Bounds how far a pixel's mean is from that over `pixel`, per largest value in either.
+
+        Each of the four edges is off by at most d times its distance from the film's centre, d the relative error of `half`:
+        by less than d (columns + rows) of the pixel's area together. A mean over one of two regions differs from that over the
+        other by at most twice the share that they do not share; twice that again leaves room for which of them it is a share of.
+        """
+        error = max(((half - half.mid()) / half).abs_upper() for half in self.half)
+        return 4 * (self.columns + self.rows) * error
+
+    @property
+    def film(self) -> Plane:
+        """The plane through the origin across the view, in front of which there is something to see."""
+        return Plane(self.forward, dot(self.forward, self.origin))
+
+
+@dataclass(frozen=True)
+class View:
+    """The points of a plane by film position: a frame in which `direct` can average."""
+
+    camera: Camera
+    plane: Plane
+
+    def at(self, x: Ball, y: Ball) -> Vector:
+        """Where the ray through (x, y) meets the plane."""
+        start, along = self.camera.ray(x, y)
+        return plus(start, times(along, self.reach(start, along)))
+
+    def reach(self, start: Vector, along: Vector) -> Number:
+        """How far along a ray it meets the plane, in lengths of `along`."""
+        return -self.plane.height(start) / dot(self.plane.normal, along)
+
+    def line(self, other: Plane) -> Line | None:
+        """The film positions at which another plane is seen to meet this one; None where there are none, or all are."""
+        constant, *ends = (self._above(other, fmpq(x), fmpq(y)) for x, y in ((0, 0), (1, 0), (0, 1)))
+        return planes.scaled((constant, *(end - constant for end in ends)))
+
+    def _above(self, other: Plane, x: Rational, y: Rational) -> Rational:
+        """The other plane's height where a ray meets this plane, times a factor: linear in the film position."""
+        start, along = self.camera.ray(x, y)
+        mine, theirs = (dot(plane.normal, along) for plane in (self.plane, other))
+        return other.height(start) * mine - self.plane.height(start) * theirs

@@ -16,13 +16,13 @@ from types import ModuleType
 import numpy as np
 from flint import arb, ctx
 
-from lightproof.certify import coaxial_disks, direct, floor_seen, sphere_interior
+from lightproof.certify import coaxial_disks, direct, pictures, sphere_interior
 from lightproof.certify.balls import PRECISION, CannotCertify, Element, Undecided, exact
 from lightproof.scene import PointsFilm, Scene
 
 MOST_PRECISION = 4096  # bits
 NARROW = 60  # bits of a value at a point that a ball has to give
-SOLVERS: tuple[ModuleType, ...] = (sphere_interior, floor_seen, coaxial_disks, direct)
+SOLVERS: tuple[ModuleType, ...] = (sphere_interior, pictures, coaxial_disks, direct)
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,7 @@ def solver(scene: Scene) -> ModuleType:
 
 def certify(scene: Scene, elements: Iterable[int] | None = None, progress: Callable[[], None] = lambda: None) -> Certified:
     """Proven values of the film, or of the elements asked for; `progress` is called after each. Raises CannotCertify."""
+    scene = scene.tangible
     module = solver(scene)
     solution = cache(lambda bits: module.solve(scene))  # at each working precision anew
     narrow = NARROW if isinstance(scene.film, PointsFilm) else 0

@@ -79,9 +79,13 @@ class Frame:
 
     def line(self, plane: Plane) -> Line | None:
         """Where a plane meets the film's plane, scaled so that equal lines are equal; None where they are parallel."""
-        line = plane.height(self.origin), dot(plane.normal, self.u), dot(plane.normal, self.v)
-        leading = line[1] or line[2]
-        return tuple(number / leading for number in line) if leading else None
+        return scaled((plane.height(self.origin), dot(plane.normal, self.u), dot(plane.normal, self.v)))
+
+
+def scaled(line: Line) -> Line | None:
+    """The line, so that equal lines are equal; None where a + b p + c q is the same everywhere."""
+    leading = line[1] or line[2]
+    return tuple(number / leading for number in line) if leading else None
 
 
 def cut(region: Region, lines: Iterable[Line]) -> list[Region]:

@@ -56,6 +56,16 @@ OVERCAST = Provenance(
     "The integral of L_z (1 + 2 sin γ)/3 cos θ over the visible sky; that sky is Moon and Spencer's.",
     ("moon1942",),
 )
+SEEN = Provenance(
+    "L = the lamp's own; 0 behind; ρ E/π where a surface reflects: averaged over each pixel, by the area that each part takes",
+    "Radiance is the same all along a ray (Nicodemus 1963); outlines are cut in exact numbers.",
+    ("nicodemus1963",),
+)
+BALL_SEEN = Provenance(
+    "L_e + ρ L on the ball, L beside it: in a pixel, by the share of its area that the ball's outline encloses",
+    "Nothing convex lights itself: under a uniform sky it receives π L everywhere; radiance is the same all along a ray.",
+    ("lambert1760", "nicodemus1963"),
+)
 GLOW = Provenance("L = L_e (1 + ρ + ρ² + …) = L_e/(1 − ρ), E = π L", SPHERE_THEOREM, ("jacquez1955",))
 LIT_SPHERE = Provenance(
     "E = I (r − c cos γ)/(r² + c² − 2 r c cos γ)^(3/2) + ρ I/(r² (1 − ρ)), L = ρ E/π", SPHERE_THEOREM, ("jacquez1955",))

@@ -93,7 +93,7 @@ def _lit(scene_: Scene, wall: scene.Surface, light: scene.PointLight) -> Element
     before = spread * _series(wall.reflectance, 1, last if last == "all" else last - 1)
     camera, centre, radius = Camera.of(film), point(wall.shape.center), exact(wall.shape.radius)
     radiance = _seen(light, centre, radius, before, exact(wall.reflectance))
-    return lambda element: quadrature.mean(lambda s, t: radiance(_exit(*camera.ray(element, s, t), centre, radius)))
+    return lambda element: quadrature.mean(lambda s, t: radiance(_exit(*camera.within(element, s, t), centre, radius)))
 
 
 def _direct(light: scene.PointLight, film: scene.PointsFilm, element: int) -> arb:
