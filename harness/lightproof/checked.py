@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable
 from typing import Any, ClassVar
 
+SHORTEST, FARTHEST = 1e-150, 1e150  # m: a binary64 holds the squares of all lengths between
 KEBAB_CASE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 
@@ -102,11 +103,20 @@ def number(above: float = -math.inf, least: float = -math.inf, most: float = mat
     return rule(check, default)
 
 
+def length() -> Any:
+    """A field for a length [m]."""
+    return number(least=SHORTEST, most=FARTHEST)
+
+
 def to_vector(value: Any) -> tuple[float, float, float]:
-    """Three finite numbers."""
+    """Three numbers from -FARTHEST to FARTHEST."""
     if not isinstance(value, list | tuple) or len(value) != 3:
         raise SceneError("", f"{shown(value)} is not a vector; give three numbers [x, y, z]")
-    return tuple(to_number(component) for component in value)
+    vector = tuple(to_number(component) for component in value)
+    for component in vector:
+        if abs(component) > FARTHEST:
+            raise SceneError("", f"{component:g} is out of range; give numbers from {-FARTHEST:g} to {FARTHEST:g}")
+    return vector
 
 
 def vector(default: Any = dataclasses.MISSING) -> Any:

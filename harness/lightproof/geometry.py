@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 
-from lightproof.checked import Checked, SceneError, direction, number, vector, vectors
+from lightproof.checked import SHORTEST, Checked, SceneError, direction, length, number, vector, vectors
 
 Vec3 = tuple[float, float, float]
 
 PLANARITY = 1e-9  # of a polygon's size: how far a vertex may lie off its plane
-SLIVER = 1e-18  # of a polygon's size squared: the smallest area that still has a normal
+SLIVER = 1e-15  # of a polygon's size squared: what has no more area than this has none
 FRAME = 1e-9  # sine of the smallest angle between two directions that still span a plane
 
 
@@ -28,28 +30,45 @@ class Polygon(Checked):
     def check(self) -> None:
         corners = np.array(self.vertices)
         size = float(np.ptp(corners, axis=0).max())
-        area_vector = vector_area(corners)
-        area = float(np.linalg.norm(area_vector))
-        if size == 0 or area <= SLIVER * size**2:
-            raise SceneError("vertices", "the polygon has no area; give at least three vertices that are not on one line")
-        offsets = (corners - corners[0]) @ (area_vector / area)
-        if np.abs(offsets).max() > PLANARITY * size:
-            index = int(np.abs(offsets).argmax())
-            raise SceneError("vertices", f"vertex {index} lies {abs(offsets[index]):.3g} m off the plane of the others;"
+        if 0 < size < SHORTEST:
+            raise SceneError("vertices", f"the polygon is {size:.3g} m wide; at least {SHORTEST:g} m is accepted")
+        if self.is_degenerate:
+            return
+        if self.area <= SLIVER * size**2:
+            raise SceneError("vertices", "the polygon has no area, yet is no line: its edges cross; give a simple polygon")
+        flat = (corners - corners[0]) / size
+        offsets = np.abs(flat @ self.normal) if len(corners) > 3 else np.zeros(3)
+        if offsets.max() > PLANARITY:
+            index = int(offsets.argmax())
+            raise SceneError("vertices", f"vertex {index} lies {offsets[index] * size:.3g} m off the plane of the others;"
                                          f" at most {PLANARITY * size:.3g} m is accepted")
-        crossing = self_intersection(corners, area_vector / area)
+        crossing = self_intersection(flat, self.normal)
         if crossing:
             raise SceneError("vertices", "edges {} and {} cross or touch; give a simple polygon".format(*crossing))
 
     @property
     def normal(self) -> np.ndarray:
         """Unit normal of the front, (3,)."""
-        return unit(vector_area(np.array(self.vertices)))
+        return unit(self._vector_area)
 
     @property
     def area(self) -> float:
         """Area [m2]."""
-        return float(np.linalg.norm(vector_area(np.array(self.vertices))))
+        return math.hypot(*self._vector_area)
+
+    @property
+    def is_degenerate(self) -> bool:
+        """Whether all vertices lie on one line, so that it has no area."""
+        corners = np.array(self.vertices)
+        spokes = corners - corners[0]
+        longest = spokes[np.abs(spokes).max(axis=1).argmax()]
+        return bool(np.abs(np.cross(spokes, longest)).max() <= SLIVER * np.abs(longest).max() ** 2)
+
+    @cached_property
+    def _vector_area(self) -> np.ndarray:
+        """As `vector_area`, in exact numbers: that of a sliver cancels."""
+        corners = np.array([[Fraction(component) for component in vertex] for vertex in self.vertices])
+        return vector_area(corners).astype(float)
 
 
 @dataclass(frozen=True)
@@ -60,7 +79,7 @@ class Disk(Checked):
 
     center: Vec3 = vector()
     normal: Vec3 = direction()
-    radius: float = number(above=0)
+    radius: float = length()
 
     @property
     def area(self) -> float:
@@ -75,7 +94,7 @@ class Sphere(Checked):
     TAG = ("type", "sphere")
 
     center: Vec3 = vector()
-    radius: float = number(above=0)
+    radius: float = length()
 
     @property
     def area(self) -> float:
@@ -91,8 +110,8 @@ class Cylinder(Checked):
 
     base: Vec3 = vector()
     axis: Vec3 = direction()
-    height: float = number(above=0)
-    radius: float = number(above=0)
+    height: float = length()
+    radius: float = length()
 
     @property
     def area(self) -> float:
@@ -108,7 +127,7 @@ class Cap(Checked):
     TAG = ("type", "cap")
 
     center: Vec3 = vector()
-    radius: float = number(above=0)
+    radius: float = length()
     axis: Vec3 = direction()
     half_angle: float = number(above=0, below=180)
 

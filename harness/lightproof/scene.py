@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import Any
 
@@ -233,8 +233,6 @@ class Scene:
         ids = [item.id for item in (*self.lights, *self.surfaces)]
         for duplicate in {name for name in ids if ids.count(name) > 1}:
             raise SceneError("id", f"'{duplicate}' names two things; ids must differ")
-        if not self.lights and not any(surface.radiance for surface in self.surfaces):
-            raise SceneError("light", "nothing shines; give a light, or a surface with a radiance of its own")
         if self.max_bounces == "all" and (_white_ball(self.surfaces) or _white_room(self.surfaces)):
             raise SceneError("max_bounces", 'a closed surface of reflectance 1 never loses light; give a number instead of "all"')
         object.__setattr__(self, "digest", _digest(self))
@@ -254,6 +252,12 @@ class Scene:
         }
 
     @property
+    def tangible(self) -> Scene:
+        """The scene without its polygons that have no area: these neither shine nor block."""
+        lights, surfaces = (tuple(item for item in items if not _is_degenerate(item)) for items in (self.lights, self.surfaces))
+        return self if (lights, surfaces) == (self.lights, self.surfaces) else replace(self, lights=lights, surfaces=surfaces)
+
+    @property
     def name(self) -> str:
         """`id`, with the case where it is not the base: square-light, square-light:far."""
         return self.id if self.case == "base" else f"{self.id}:{self.case}"
@@ -269,6 +273,11 @@ class Scene:
         return self.max_bounces != 0 and any(surface.reflectance > 0 for surface in self.surfaces)
 
 
+def _is_degenerate(item: Light | Surface) -> bool:
+    shape = getattr(item, "shape", None)
+    return isinstance(shape, geometry.Polygon) and shape.is_degenerate
+
+
 def _white_ball(surfaces: tuple[Surface, ...]) -> bool:
     """Whether a whole white sphere, or two white caps that make one, face inward."""
     white = [surface.shape for surface in surfaces if surface.reflectance == 1 and surface.side == "inside"]
@@ -278,9 +287,12 @@ def _white_ball(surfaces: tuple[Surface, ...]) -> bool:
 
 def _white_room(surfaces: tuple[Surface, ...]) -> bool:
     """Whether white polygons close round a room: each edge is run through once either way, and the fronts face inward."""
-    white = [surface.shape for surface in surfaces if surface.reflectance == 1 and isinstance(surface.shape, geometry.Polygon)]
+    polygons = [surface for surface in surfaces if isinstance(surface.shape, geometry.Polygon) and not _is_degenerate(surface)]
+    white = [surface.shape for surface in polygons if surface.reflectance == 1]
     edges = [edge for shape in white for edge in zip(shape.vertices, (*shape.vertices[1:], shape.vertices[0]), strict=True)]
-    volume = sum(float(np.dot(shape.vertices[0], geometry.vector_area(np.array(shape.vertices)))) for shape in white)
+    size = max((abs(component) for shape in white for vertex in shape.vertices for component in vertex), default=1.0)
+    walls = [np.array(shape.vertices) / size for shape in white]
+    volume = sum(float(np.dot(corners[0], geometry.vector_area(corners))) for corners in walls)
     return sorted(edges) == sorted((end, start) for start, end in edges) and volume < 0
 
 

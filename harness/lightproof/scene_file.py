@@ -63,7 +63,7 @@ def _parse(path: Path) -> dict[str, Any]:
 def from_table(table: dict[str, Any], scene_id: str, case: str = BASE) -> Scene:
     """A Scene from its table (as `Scene.to_table` gives it); raises SceneError."""
     _only(table, TOP, required=("title", "max_bounces", "tolerance", "film"))
-    return Scene(
+    read = Scene(
         id=scene_id,
         case=case,
         title=_field(table, "title", _text),
@@ -76,6 +76,9 @@ def from_table(table: dict[str, Any], scene_id: str, case: str = BASE) -> Scene:
         tolerance=_field(table, "tolerance", _positive),
         tolerance_scale=_field(table, "tolerance_scale", _scale, "max"),
     )
+    if not read.lights and not any(surface.radiance for surface in read.surfaces):
+        raise SceneError("light", "nothing shines; give a light, or a surface with a radiance of its own")
+    return read
 
 
 def _field(table: dict[str, Any], key: str, read: Callable[[Any], Any], default: Any = None) -> Any:

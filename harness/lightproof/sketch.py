@@ -27,14 +27,15 @@ def share(receiver: np.ndarray, light: np.ndarray, square: np.ndarray) -> np.nda
 
 def can(scene: Scene) -> bool:
     """Whether a scene is simple enough: direct irradiance from point lights and from flat or round area lights."""
-    return scene.film.quantity == "irradiance" and not scene.reflects and bool(scene.lights) and all(map(_simple, scene.lights))
+    lights = scene.tangible.lights
+    return scene.film.quantity == "irradiance" and not scene.reflects and bool(lights) and all(map(_simple, lights))
 
 
 def irradiance(scene: Scene, elements: np.ndarray, shares: dict[str, Share]) -> dict[str, np.ndarray]:
     """Irradiance (m,) [W/m2] at `elements` (m,) when nothing blocks, for each way to compute what a point of a lamp
     contributes."""
     positions, normals = (vectors[elements] for vectors in _receivers(scene.film))
-    terms = [_terms(light, positions, normals) for light in scene.lights]
+    terms = [_terms(light, positions, normals) for light in scene.tangible.lights]
     return {name: sum((strength * one(*geometric)).sum(axis=1) for strength, *geometric in terms) for name, one in shares.items()}
 
 

@@ -21,9 +21,10 @@ class Composed(Estimator):
     real: ClassVar[type[np.floating]] = np.float32
 
     def build(self, scene: Scene) -> None:
-        self.view = self.seen(scene)
+        seen = self.seen(scene)
+        self.pieces = self.sources(scene, seen) if seen else []
+        self.view = seen if self.pieces else None  # where nothing shines, rays find nothing
         self.precision = np.dtype(self.real).name if self.view else "float64"
-        self.pieces = self.sources(scene, self.view) if self.view else []
         self.world = None if self.view else world.build(scene)
 
     def seen(self, scene: Scene) -> View | None:

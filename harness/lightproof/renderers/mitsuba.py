@@ -151,7 +151,7 @@ def integrator(scene: Scene) -> dict[str, Any]:
     if depth != 2:
         return {"type": "path", "max_depth": depth, "rr_depth": depth + 1}
     emitters = [*scene.lights, *(surface for surface in scene.surfaces if surface.radiance)]
-    around = [isinstance(emitter, Environment) or getattr(emitter, "side", "") == "inside" for emitter in emitters]
+    around = [isinstance(emitter, Environment) or getattr(emitter, "side", "") == "inside" for emitter in emitters] or [True]
     return {"type": "direct", "emitter_samples": int(not all(around)), "bsdf_samples": int(any(around))}
 
 

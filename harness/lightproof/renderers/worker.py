@@ -65,14 +65,15 @@ class Host:
 
     def prepare(self, method: str, scene_id: str, case: str, table: dict[str, Any]) -> dict[str, Any]:
         """What there is to say of a prepared scene, or why it is unsupported."""
-        scene, opened = scene_file.from_table(table, scene_id, case), self._methods[method]
+        asked, opened = scene_file.from_table(table, scene_id, case), self._methods[method]
+        scene = asked.tangible
         reason = opened.unsupported(scene)
         if reason is not None:
             return {"unsupported": reason}
         start = time.perf_counter()
         named = opened.prepare(scene)
         seconds = phases(named, time.perf_counter() - start, rest="setup")
-        self._scenes[method] = scene
+        self._scenes[method] = asked
         return {"seconds": seconds, "settings": dict(opened.settings()), "precision": opened.precision,
                 "caveat": opened.caveat(scene)}
 

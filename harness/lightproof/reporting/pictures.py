@@ -64,7 +64,7 @@ def _render_apart(scene: Scene, path: Path) -> None:
 def main() -> None:
     """Render the scene on standard input into the file that the command line names."""
     about = json.load(sys.stdin)
-    scene = scene_file.from_table(about["table"], about["id"], about["case"])
+    scene = scene_file.from_table(about["table"], about["id"], about["case"]).tangible
     try:
         mi = _mitsuba()
     except Unavailable as error:
