@@ -12,7 +12,8 @@ from itertools import pairwise
 from flint import arb
 
 from lightproof.certify.balls import Ball, Point, Vector, angle, cross, dot, minus, root, times
-from lightproof.certify.polygon import Loop, Parts, circle, corners_of, intersection, visible
+from lightproof.certify.planes import Plane
+from lightproof.certify.polygon import Loop, Parts, circle, clip, corners_of, intersection, visible
 
 Region = Counter[Loop]
 
@@ -26,6 +27,12 @@ def shadow(blockers: Iterable[Parts], receiver: Point) -> Region:
             seen[part] += count
         before.append(blocker)
     return _tidy(seen)
+
+
+def cut(polygon: Parts, plane: Plane) -> Parts:
+    """The part of a polygon in front of a plane."""
+    halves = ((sign, clip(corners, plane.normal, plane.offset)) for sign, corners in polygon)
+    return tuple((sign, corners) for sign, corners in halves if corners)
 
 
 def union(a: Region, b: Region, receiver: Point) -> Region:
@@ -47,6 +54,11 @@ def _overlap(a: Region, b: Region, receiver: Point) -> Region:
 
 def _tidy(region: Region) -> Region:
     return Counter({part: count for part, count in region.items() if part and count})
+
+
+def measure(region: Region, receiver: Vector) -> Ball:
+    """Solid angle [sr] of a region."""
+    return sum((count * solid_angle(part, receiver) for part, count in region.items()), arb(0))
 
 
 def solid_angle(edges: Loop, receiver: Vector) -> Ball:

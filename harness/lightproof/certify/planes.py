@@ -27,6 +27,11 @@ class Plane:
         """normal . x - offset: positive in front."""
         return dot(self.normal, x) - self.offset
 
+    @property
+    def turned(self) -> Plane:
+        """The same plane with its front on the other side."""
+        return Plane(times(self.normal, -1), -self.offset)
+
 
 def of(corners: Sequence[Point]) -> Plane:
     """The plane of a polygon, its front the polygon's."""

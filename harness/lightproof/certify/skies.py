@@ -20,7 +20,7 @@ from lightproof.certify.caps import Cap
 from lightproof.certify.contour import projected
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
-from lightproof.certify.loops import Region, second_moment, shadow
+from lightproof.certify.loops import Region, cut, second_moment, shadow
 from lightproof.certify.planes import Plane
 from lightproof.certify.polygon import Parts, clip, convex_parts, lambert
 from lightproof.certify.provenance import Provenance
@@ -90,7 +90,7 @@ class _Screen:
 
     def shadow(self, x: Point) -> Region:
         """The directions above both horizons in which the polygons are seen."""
-        return shadow(self.polygons if self.level else [_raised(polygon, x) for polygon in self.polygons], x)
+        return shadow(self.polygons if self.level else [cut(polygon, Plane(UP, x[2])) for polygon in self.polygons], x)
 
 
 def _screen(light: Sky, blockers: Sequence[Shape], receiver: Plane) -> _Screen:
@@ -106,12 +106,6 @@ def _screen(light: Sky, blockers: Sequence[Shape], receiver: Plane) -> _Screen:
 def _level(light: Sky, receiver: Plane) -> bool:
     everywhere = isinstance(light, scene.SunDisc) or getattr(light, "extent", "upper") == "sphere"
     return everywhere or (receiver.normal[0] == receiver.normal[1] == 0 and receiver.normal[2] > 0)
-
-
-def _raised(polygon: Parts, x: Point) -> Parts:
-    """The part of a polygon above a point's level."""
-    cut = ((sign, clip(corners, UP, x[2])) for sign, corners in polygon)
-    return tuple((sign, corners) for sign, corners in cut if corners)
 
 
 def _of_uniform(light: scene.Environment, screen: _Screen, x: Point) -> Formula:
