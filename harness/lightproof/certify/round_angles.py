@@ -12,7 +12,7 @@ from itertools import combinations
 from flint import arb
 
 from lightproof import geometry
-from lightproof.certify import caps, contour, disk_angle
+from lightproof.certify import caps, disk_angle, rounded
 from lightproof.certify.balls import CannotCertify, Point, dot, exact, point
 from lightproof.certify.caps import Cap
 from lightproof.certify.loops import Region, shadow, union
@@ -58,7 +58,7 @@ def _light(light: AreaLight | SunDisc, outline: Cap, around: Surroundings, norma
     hiding = [face for face in around.dark if isinstance(light, SunDisc) or _before(face, light, outline, around)]
     taken = union(around.seen, shadow([face.parts for face in hiding], around.x), around.x)
     whole = caps.whole(outline) if normal is None else caps.above(outline, normal)
-    return contour.solid_angle(whole) - _common(outline, taken, around)
+    return rounded.solid_angle(whole) - _common(outline, taken, around)
 
 
 def _hidden(screen: Surface, outline: Cap, around: Surroundings) -> arb:
@@ -94,4 +94,4 @@ def _overlap(cap: Cap, region: Region, around: Surroundings) -> bool:
 def _common(cap: Cap, region: Region, around: Surroundings) -> arb:
     """Solid angle of what a cap shares with a region."""
     parts = [(caps.shared(cap, loop, around.x), count) for loop, count in region.items()]
-    return sum((count * contour.solid_angle(part) for part, count in parts), arb(0))
+    return sum((count * rounded.solid_angle(part) for part, count in parts), arb(0))

@@ -17,7 +17,7 @@ from lightproof import geometry, scene
 from lightproof.certify import caps, emitters, planes, provenance
 from lightproof.certify.balls import Ball, CannotCertify, Point, Vector, exact, point, unit
 from lightproof.certify.caps import Cap
-from lightproof.certify.contour import projected
+from lightproof.certify.rounded import projected
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
 from lightproof.certify.loops import Region, cut, second_moment, shadow
