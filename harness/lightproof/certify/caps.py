@@ -14,8 +14,8 @@ from flint import arb, fmpq
 from lightproof import geometry
 from lightproof.certify import balls
 from lightproof.certify.balls import CannotCertify, Number, Point, Undecided, Vector, cross, dot, minus, plus, root, times, unit
-from lightproof.certify.rounded import Arc, Contour
 from lightproof.certify.polygon import Loop, circle, corners_of
+from lightproof.certify.rounded import Arc, Contour
 from lightproof.scene import SunDisc
 
 

@@ -1,83 +1,49 @@
-"""Lambert's formula around what a receiver sees of a polygon, made ready for many receivers near each other."""
+"""Convex regions of directions bounded by arcs of circles, great and small: their solid angle and irradiance."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from flint import arb
 
-from lightproof.certify.balls import Ball, Point, Vector, angle, cross, dot, minus, plus, root, times
-from lightproof.certify.polygon import Edge, Loop
-
-Corner = tuple[Vector, int] | None  # a point, and whether its direction or the opposite one is meant
+from lightproof.certify.balls import Number, Vector, cross, dot, minus
+from lightproof.certify.loops import triangle
 
 
 @dataclass(frozen=True)
-class Contour:
-    """A loop in balls: where each edge starts and how it runs, and the corner before it, None where no point is known in
-    which its line and that of the edge before meet."""
+class Arc:
+    """A part of a circle round a unit `axis`, `cosine` being that of the angle between them, run through counter-clockwise by
+    `turn` radians from `start` to `end`, which are unit vectors."""
 
-    starts: tuple[Vector, ...]
-    runs: tuple[Vector, ...]
-    corners: tuple[Corner, ...]
-    whole: tuple[bool, ...]  # whether all of an edge is seen
+    axis: Vector
+    cosine: Number
+    start: Vector
+    end: Vector
+    turn: arb
 
-    @classmethod
-    def of(cls, edges: Loop, receiver: Point) -> Contour:
-        """The contour of a loop as an exact receiver sees it, and others near it."""
-        befores, afters = edges[-1:] + edges[:-1], edges[1:] + edges[:1]
-        return cls(
-            tuple(_ball(start) for start, _ in edges),
-            tuple(_ball(minus(end, start)) for start, end in edges),
-            tuple(_corner(before, here, receiver) for before, here in zip(befores, edges, strict=True)),
-            tuple(before[1] == here[0] and here[1] == after[0]
-                  for before, here, after in zip(befores, edges, afters, strict=True)),
-        )
+    def projected(self, normal: Vector) -> arb:
+        """The part of Lambert's contour integral along the arc, half of (w x dw) . normal [sr]."""
+        chord = dot(cross(self.axis, minus(self.end, self.start)), normal)
+        return ((1 - self.cosine**2) * self.turn * dot(self.axis, normal) + self.cosine * chord) / 2
 
-    def irradiance(self, x: Vector, normal: Vector) -> Ball:
-        """Irradiance per radiance [sr] from a loop above the horizon of a receiver with unit `normal` (Lambert 1760; Arvo
-        1995): half the sum over edges of angle times cosine. Angles are signed, so it stays analytic where an edge vanishes."""
-        circles = [cross(minus(start, x), run) for start, run in zip(self.starts, self.runs, strict=True)]
-        corners = [_direction(corner, circles[i - 1], circles[i], x) for i, corner in enumerate(self.corners)]
-        lengths = [root(dot(corner, corner)) for corner in corners]
-        total = arb(0)
-        for i, inwards in enumerate(circles):
-            a, b, length = corners[i], corners[i + 1 - len(corners)], root(dot(inwards, inwards))
-            sine = length if self.whole[i] else dot(cross(a, b), inwards) / length
-            total += angle(sine, dot(a, b), lengths[i] * lengths[i + 1 - len(lengths)]) * (dot(inwards, normal) / length)
-        return total / 2
+    def beyond_chord(self) -> arb:
+        """Solid angle [sr] between the arc and the great circle through its ends: a sector of the cap less a triangle."""
+        if self.cosine == 0:
+            return arb(0)
+        return (1 - self.cosine) * self.turn - triangle(self.axis, self.start, self.end)
 
 
-def total(contours: Sequence[Contour], x: Vector, normal: Vector) -> Ball:
-    """Irradiance per radiance [sr] from several loops."""
-    return sum((contour.irradiance(x, normal) for contour in contours), arb(0))
+Contour = tuple[Arc, ...]  # round a convex region, which it keeps on its left; () where there is nothing
 
 
-def _ball(vector: Point) -> Vector:
-    return tuple(arb(component) for component in vector)
+def projected(contour: Contour, normal: Vector) -> arb:
+    """Irradiance per radiance [sr] from a region above the horizon of a receiver with unit `normal`."""
+    return sum((arc.projected(normal) for arc in contour), arb(0))
 
 
-def _corner(before: Edge, here: Edge, receiver: Point) -> Corner:
-    if before[1] == here[0]:
-        return _ball(here[0]), 1
-    meeting = meet(before, here)
-    if meeting is None:
-        return None
-    ways = [cross(minus(edge[0], receiver), minus(edge[1], edge[0])) for edge in (before, here)]
-    return _ball(meeting), 1 if dot(cross(*ways), minus(meeting, receiver)) > 0 else -1
-
-
-def meet(a: Edge, b: Edge) -> Point | None:
-    """The point in which the lines of two edges meet; None where they are parallel or pass each other."""
-    along, other, apart = minus(a[1], a[0]), minus(b[1], b[0]), minus(b[0], a[0])
-    normal = cross(along, other)
-    if not any(normal) or dot(apart, normal) != 0:
-        return None
-    return plus(a[0], times(along, dot(cross(apart, other), normal) / dot(normal, normal)))
-
-
-def _direction(corner: Corner, before: Vector, here: Vector, x: Vector) -> Vector:
-    if corner is None:
-        return cross(before, here)
-    return minus(corner[0], x) if corner[1] > 0 else minus(x, corner[0])
+def solid_angle(contour: Contour) -> arb:
+    """Solid angle [sr] of a region."""
+    if not contour:
+        return arb(0)
+    fan = sum((triangle(contour[0].start, arc.start, arc.end) for arc in contour[1:-1]), arb(0))
+    return fan + sum((arc.beyond_chord() for arc in contour), arb(0))

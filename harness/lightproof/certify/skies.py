@@ -17,13 +17,13 @@ from lightproof import geometry, scene
 from lightproof.certify import caps, emitters, planes, provenance
 from lightproof.certify.balls import Ball, CannotCertify, Point, Vector, exact, point, unit
 from lightproof.certify.caps import Cap
-from lightproof.certify.rounded import projected
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
 from lightproof.certify.loops import Region, cut, second_moment, shadow
 from lightproof.certify.planes import Plane
 from lightproof.certify.polygon import Parts, clip, convex_parts, lambert
 from lightproof.certify.provenance import Provenance
+from lightproof.certify.rounded import projected
 
 Sky = scene.Environment | scene.OvercastSky | scene.SunDisc
 OPEN = {scene.Environment: emitters.uniform_sky, scene.OvercastSky: emitters.overcast_sky, scene.SunDisc: emitters.sun}
