@@ -16,13 +16,23 @@ from types import ModuleType
 import numpy as np
 from flint import arb, ctx
 
-from lightproof.certify import coaxial_disks, direct, pictures, solid_angle, sphere_interior
+from lightproof.certify import (
+    coaxial_disks,
+    concentric,
+    direct,
+    enclosure,
+    one_reflection,
+    pictures,
+    solid_angle,
+    sphere_interior,
+)
 from lightproof.certify.balls import PRECISION, CannotCertify, Element, Undecided, exact
 from lightproof.scene import PointsFilm, Scene
 
 MOST_PRECISION = 4096  # bits
 NARROW = 60  # bits of a value at a point that a ball has to give
-SOLVERS: tuple[ModuleType, ...] = (sphere_interior, pictures, coaxial_disks, solid_angle, direct)
+SOLVERS: tuple[ModuleType, ...] = (sphere_interior, concentric, enclosure, pictures, coaxial_disks, one_reflection, solid_angle,
+                                    direct)
 
 
 @dataclass(frozen=True)
