@@ -91,7 +91,7 @@ def test_sphere_cut_by_the_horizon(height, below):
     light = {"kind": "area", "id": "lamp", "radiance": 3.1, "shape": shape}
     cone = runpy.run_path(str(SECOND / "sphere-light.py"))["cone"]
     distance = math.hypot(0.9, height)
-    expected = 3.1 * cone(np.array([math.asin(height / distance)]), np.array([math.asin(0.5 / distance)]))[0]
+    expected = 3.1 * float(cone(math.asin(height / distance), math.asin(0.5 / distance)))
     assert value([light], at([0, 0, 0])) == pytest.approx(expected, rel=1e-13)
     sun = {"kind": "environment", "id": "sun", "radiance": 3.1, "direction": [-0.9, 0, -height],
            "half_angle": math.degrees(math.asin(0.5 / distance))}
