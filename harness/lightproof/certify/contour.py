@@ -35,11 +35,15 @@ class Contour:
                   for before, here, after in zip(befores, edges, afters, strict=True)),
         )
 
+    def outline(self, x: Vector) -> tuple[list[Vector], list[Vector]]:
+        """Inward normals of the great circles on which the edges are seen, and the directions in which each edge begins."""
+        circles = [cross(minus(start, x), run) for start, run in zip(self.starts, self.runs, strict=True)]
+        return circles, [_direction(corner, circles[i - 1], circles[i], x) for i, corner in enumerate(self.corners)]
+
     def irradiance(self, x: Vector, normal: Vector) -> Ball:
         """Irradiance per radiance [sr] from a loop above the horizon of a receiver with unit `normal` (Lambert 1760; Arvo
         1995): half the sum over edges of angle times cosine. Angles are signed, so it stays analytic where an edge vanishes."""
-        circles = [cross(minus(start, x), run) for start, run in zip(self.starts, self.runs, strict=True)]
-        corners = [_direction(corner, circles[i - 1], circles[i], x) for i, corner in enumerate(self.corners)]
+        circles, corners = self.outline(x)
         lengths = [root(dot(corner, corner)) for corner in corners]
         total = arb(0)
         for i, inwards in enumerate(circles):

@@ -12,7 +12,7 @@ from flint import acb, arb
 
 from lightproof import geometry
 from lightproof.certify.balls import Number, Point, Undecided, Vector, cross, dot, exact, minus, plus, point, root, times, unit
-from lightproof.certify.loops import triangle
+from lightproof.certify.rounded import triangle
 
 
 def solid_angle(shape: geometry.Disk, receiver: Point, normal: Point | None) -> arb:

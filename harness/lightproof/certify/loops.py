@@ -6,14 +6,14 @@ Regions of directions are Counters: convex loops with whole numbers whose indica
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
-from itertools import pairwise
+from collections.abc import Iterable, Sequence
 
 from flint import arb
 
 from lightproof.certify.balls import Ball, Point, Vector, angle, cross, dot, minus, root, times
+from lightproof.certify.contour import Contour
 from lightproof.certify.planes import Plane
-from lightproof.certify.polygon import Loop, Parts, circle, clip, corners_of, intersection, visible
+from lightproof.certify.polygon import Loop, Parts, clip, intersection, visible
 
 Region = Counter[Loop]
 
@@ -56,37 +56,36 @@ def _tidy(region: Region) -> Region:
     return Counter({part: count for part, count in region.items() if part and count})
 
 
-def measure(region: Region, receiver: Vector) -> Ball:
+def measure(region: Region, receiver: Point) -> Ball:
     """Solid angle [sr] of a region."""
     return sum((count * solid_angle(part, receiver) for part, count in region.items()), arb(0))
 
 
-def solid_angle(edges: Loop, receiver: Vector) -> Ball:
-    """Solid angle [sr] of a convex loop: a fan of triangles."""
-    first, *others = corners_of(edges, receiver)
-    return sum((triangle(first, b, c) for b, c in pairwise(others)), arb(0))
+def solid_angle(edges: Loop, receiver: Point) -> Ball:
+    """Solid angle [sr] of a loop."""
+    return excess(*Contour.of(edges, receiver).outline(receiver))
 
 
-def triangle(a: Vector, b: Vector, c: Vector) -> Ball:
-    """Signed solid angle [sr] of the triangle in which three directions, of any length, are seen (Van Oosterom and Strackee
-    1983): positive where a, b, c run counter-clockwise."""
-    la, lb, lc = (root(dot(side, side)) for side in (a, b, c))
-    ab, bc, ca = la * lb + dot(a, b), lb * lc + dot(b, c), lc * la + dot(c, a)
-    volume = dot(a, cross(minus(b, a), minus(c, a)))
-    return 2 * angle(volume, ab * lc + lb * dot(c, a) + la * dot(b, c), root(2 * ab * bc * ca))
+def excess(circles: Sequence[Vector], corners: Sequence[Vector]) -> Ball:
+    """Solid angle [sr] inside great circles that meet in corners: a whole turn less the turns in the corners (Girard 1629)."""
+    lengths = [root(dot(inwards, inwards)) for inwards in circles]
+    total = 2 * arb.pi()
+    for i, corner in enumerate(corners):
+        sine = dot(cross(circles[i - 1], circles[i]), corner) / root(dot(corner, corner))
+        total -= angle(sine, dot(circles[i - 1], circles[i]), lengths[i - 1] * lengths[i])
+    return total
 
 
-def second_moment(edges: Loop, receiver: Vector, a: Vector, b: Vector) -> Ball:
+def second_moment(contour: Contour, receiver: Vector, a: Vector, b: Vector) -> Ball:
     """The integral of (a . w)(b . w) over the directions w in a convex loop [sr] (the axial moments of Arvo 1995).
 
     w w^T less a third of the identity is a spherical harmonic of degree 2, an eigenfunction of the Laplacian: its integral is
     -1/6 of the flux of its gradient out of the loop, which a great circle's constant inward normal g makes elementary.
     """
-    corners = corners_of(edges, receiver)
+    circles, corners = contour.outline(receiver)
     directions = [times(corner, 1 / root(dot(corner, corner))) for corner in corners]
-    total = 2 * solid_angle(edges, receiver) * dot(a, b)
-    for edge, start, end in zip(edges, directions, directions[1:] + directions[:1], strict=True):
-        inwards = circle(edge, receiver)
+    total = 2 * excess(circles, corners) * dot(a, b)
+    for inwards, start, end in zip(circles, directions, directions[1:] + directions[:1], strict=True):
         along = cross(minus(end, start), inwards)
         total += (dot(inwards, a) * dot(along, b) + dot(along, a) * dot(inwards, b)) / dot(inwards, inwards)
     return total / 6

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from flint import arb
 
-from lightproof.certify.balls import Number, Vector, cross, dot, minus
-from lightproof.certify.loops import triangle
+from lightproof.certify.balls import Number, Vector, angle, cross, dot, minus, root
 
 
 @dataclass(frozen=True)
@@ -47,3 +46,12 @@ def solid_angle(contour: Contour) -> arb:
         return arb(0)
     fan = sum((triangle(contour[0].start, arc.start, arc.end) for arc in contour[1:-1]), arb(0))
     return fan + sum((arc.beyond_chord() for arc in contour), arb(0))
+
+
+def triangle(a: Vector, b: Vector, c: Vector) -> arb:
+    """Signed solid angle [sr] of the triangle in which three directions, of any length, are seen (Van Oosterom and Strackee
+    1983): positive where a, b, c run counter-clockwise."""
+    la, lb, lc = (root(dot(side, side)) for side in (a, b, c))
+    ab, bc, ca = la * lb + dot(a, b), lb * lc + dot(b, c), lc * la + dot(c, a)
+    volume = dot(a, cross(minus(b, a), minus(c, a)))
+    return 2 * angle(volume, ab * lc + lb * dot(c, a) + la * dot(b, c), root(2 * ab * bc * ca))

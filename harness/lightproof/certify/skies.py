@@ -17,11 +17,12 @@ from lightproof import geometry, scene
 from lightproof.certify import caps, emitters, planes, provenance
 from lightproof.certify.balls import Ball, CannotCertify, Point, Vector, exact, point, unit
 from lightproof.certify.caps import Cap
+from lightproof.certify.contour import Contour
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
 from lightproof.certify.loops import Region, cut, second_moment, shadow
 from lightproof.certify.planes import Plane
-from lightproof.certify.polygon import Parts, clip, convex_parts, lambert
+from lightproof.certify.polygon import Parts, clip, convex_parts
 from lightproof.certify.provenance import Provenance
 from lightproof.certify.rounded import projected
 
@@ -113,10 +114,11 @@ def _of_uniform(light: scene.Environment, screen: _Screen, x: Point) -> Formula:
     balls = [(_round(sphere, screen, x), emitters.sphere_light(sphere, 1.0, screen.receiver)) for sphere in screen.spheres]
     if not all(caps.apart(a, b) for (a, _), (b, _) in combinations(balls, 2)):
         raise CannotCertify(f"two spheres before '{light.id}' overlap as a receiver sees them, which is not covered")
+    contours = [(Contour.of(loop, x), count) for loop, count in region.items()]
     twice = [(caps.shared(cap, loop, x), count) for cap, _ in balls for loop, count in region.items()]
 
     def taken(y: Vector) -> Ball:
-        whole = sum((count * lambert(loop, y, normal) for loop, count in region.items()), arb(0))
+        whole = sum((count * contour.irradiance(y, normal) for contour, count in contours), arb(0))
         whole += sum((formula(y) for _, formula in balls), arb(0))
         return exact(light.radiance) * (whole - sum((count * projected(part, normal) for part, count in twice), arb(0)))
 
@@ -134,10 +136,10 @@ def _round(sphere: geometry.Sphere, screen: _Screen, x: Point) -> Cap:
 def _of_overcast(light: scene.OvercastSky, screen: _Screen, x: Point) -> Formula:
     if screen.spheres:
         raise CannotCertify(f"a sphere stands before '{light.id}'; only polygons are covered before an overcast sky")
-    normal, region = screen.normal, screen.shadow(x)
+    normal, contours = screen.normal, [(Contour.of(loop, x), count) for loop, count in screen.shadow(x).items()]
 
     def taken(y: Vector) -> Ball:
-        parts = (count * (lambert(loop, y, normal) + 2 * second_moment(loop, y, normal, UP)) for loop, count in region.items())
+        parts = (count * (part.irradiance(y, normal) + 2 * second_moment(part, y, normal, UP)) for part, count in contours)
         return exact(light.zenith_radiance) / 3 * sum(parts, arb(0))
 
     return taken
