@@ -74,6 +74,11 @@ def root(x: Number) -> Ball:
     return x.sqrt(analytic=True) if isinstance(x, acb) else arb(x).sqrt()
 
 
+def exact_root(x: Rational) -> Number:
+    """Square root of a rational: a rational where it is one."""
+    return fmpq(x.p.isqrt(), x.q.isqrt()) if x.p.is_square() and x.q.is_square() else root(x)
+
+
 def arctan(x: Ball) -> Ball:
     """Inverse tangent, continued by logarithms: arb's own would cross its branch cuts unnoticed."""
     if not isinstance(x, acb):

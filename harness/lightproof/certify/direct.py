@@ -11,7 +11,7 @@ from types import ModuleType
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import emitters, planes, provenance, quadrature, shadows, skies, unblocked
+from lightproof.certify import curved, emitters, planes, provenance, quadrature, shadows, skies, unblocked
 from lightproof.certify.balls import Ball, CannotCertify, Element, dot, exact, point
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
@@ -19,7 +19,7 @@ from lightproof.certify.planes import Frame, Patch, Plane, Region
 from lightproof.certify.provenance import Provenance
 from lightproof.scene import AreaLight, PlaneFilm, PointsFilm, Scene
 
-FIELDS: tuple[ModuleType, ...] = (shadows, skies, unblocked)
+FIELDS: tuple[ModuleType, ...] = (curved, shadows, skies, unblocked)
 ROUNDING = exact(1e-15)  # of a corner's coordinates: how far above a plane a corner counts as lying on it
 
 

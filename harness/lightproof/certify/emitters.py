@@ -12,7 +12,7 @@ from flint import acb, arb
 
 from lightproof import geometry, scene
 from lightproof.certify import balls
-from lightproof.certify.balls import Ball, CannotCertify, Number, Point, Vector, cross, dot, exact, minus, point, root, unit
+from lightproof.certify.balls import Ball, CannotCertify, Number, Vector, dot, exact, minus, point, root, unit
 from lightproof.certify.planes import Plane
 
 Formula = Callable[[Vector], Ball]  # receiver -> irradiance [W/m2]
@@ -113,15 +113,11 @@ def _sphere(radius: Number, squared: Ball, height: arb, above: str) -> Ball:
 
 
 def disk_light(shape: geometry.Disk, radiance: float, receiver: Plane) -> Formula:
-    """Lambert's contour integral around the rim, which is elementary: a rational function of cosines over one turn."""
+    """Lambert's contour integral around the rim of a disk that is whole above the horizon, which is elementary: a rational
+    function of cosines over one turn."""
     centre, radius = point(shape.center), exact(shape.radius)
     axis, normal = unit(point(shape.normal)), unit(receiver.normal)
     height, tilt = dot(minus(centre, _foot(receiver)), normal), dot(axis, normal)
-    reach = radius * root(_sine_squared(point(shape.normal), receiver.normal))
-    if height <= -reach:
-        return dark
-    if not height >= reach:
-        raise CannotCertify("the receiver's horizon cuts a disk light")
 
     def irradiance(x: Vector) -> Ball:
         ray = minus(centre, x)
@@ -134,11 +130,6 @@ def disk_light(shape: geometry.Disk, radiance: float, receiver: Plane) -> Formul
         return -arb.pi() * exact(radiance) * radius * radius * (tilt - 2 * bend / (p + d)) / d
 
     return irradiance
-
-
-def _sine_squared(a: Point, b: Point) -> Number:
-    """sin^2 of the angle between two exact directions."""
-    return dot(cross(a, b), cross(a, b)) / (dot(a, a) * dot(b, b))
 
 
 def _foot(plane: Plane) -> Vector:

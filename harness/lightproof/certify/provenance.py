@@ -33,6 +33,12 @@ DISK = Provenance(
     "Lambert's contour integral around a circle; the parallel disk is in Howell's catalogue.",
     ("lambert1760", "howell"),
 )
+OUTLINES = Provenance(
+    "E = (L/2) ∮ ((y − x) × dy) · n / |y − x|² around what is seen of the light: straight edges and arcs of circles, cut where"
+    " they are seen to cross",
+    "Lambert's contour integral along straight edges, rims and silhouettes, each elementary; as in Arvo 1994, with curves.",
+    ("lambert1760", "arvo1994"),
+)
 DISK_SHADOW = Provenance(
     "E = (L/2) ∮ ((y − x) × dy) · n / |y − x|² around what is seen of the light: arcs of the light's rim and of the blocker's",
     "Lambert's contour integral along circular arcs, integrated over the distance from the common axis.",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from lightproof import geometry, scene
-from lightproof.certify import emitters, provenance
-from lightproof.certify.balls import CannotCertify, dot, point
+from lightproof.certify import curved, emitters, parting, provenance, tube, walls
+from lightproof.certify.balls import CannotCertify, Point
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
 from lightproof.certify.planes import Plane
@@ -28,6 +28,7 @@ SOURCES: dict[type, Provenance] = {
     scene.SunDisc: provenance.SPHERE,
     geometry.Disk: provenance.DISK,
     geometry.Sphere: provenance.SPHERE,
+    geometry.Cylinder: provenance.OUTLINES,
 }
 
 
@@ -54,8 +55,24 @@ def _round(light: AreaLight, receiver: Plane) -> Field:
     if isinstance(shape, geometry.Sphere):
         formula = emitters.sphere_light(shape, light.radiance, receiver)
         return Field(lambda x: formula)
-    if isinstance(shape, geometry.Disk):
-        formula = emitters.disk_light(shape, light.radiance, receiver)
-        face = Plane(point(shape.normal), dot(point(shape.normal), point(shape.center)))
-        return Field(lambda x: formula if face.height(x) > 0 else emitters.dark, (face,))
-    raise CannotCertify(f"there is no formula for a {type(shape).__name__.lower()} light")
+    if not isinstance(shape, geometry.Disk | geometry.Cylinder):
+        raise CannotCertify(f"there is no formula for a {type(shape).__name__.lower()} light")
+    if parting.below(shape, receiver):
+        return Field(lambda x: emitters.dark)
+    if not parting.above(shape, receiver):
+        return curved.field(light, [], receiver)
+    return _disk(light, receiver) if isinstance(shape, geometry.Disk) else _tube(light, receiver)
+
+
+def _disk(light: AreaLight, receiver: Plane) -> Field:
+    formula, face = emitters.disk_light(light.shape, light.radiance, receiver), parting.face(light.shape)
+    return Field(lambda x: formula if face.height(x) > 0 else emitters.dark, (face,))
+
+
+def _tube(light: AreaLight, receiver: Plane) -> Field:
+    formula = tube.tube_light(light.shape, light.radiance, receiver)
+
+    def near(x: Point) -> Formula:
+        return formula if walls.Wall.of(light.shape, x).reach > 0 else emitters.dark
+
+    return Field(near)

@@ -1,0 +1,50 @@
+"""A cylinder light that is whole above the horizon: Lambert's contour integral around the half of its wall that is seen.
+
+The outline is two lines on the wall, where planes through the receiver touch it, and the halves of both rims between them
+that are nearer; in coordinates from the receiver to the axis it is the same formula wherever the receiver is.
+"""
+
+from __future__ import annotations
+
+from lightproof import geometry
+from lightproof.certify import balls
+from lightproof.certify.balls import Ball, Number, Vector, arctan, cross, dot, exact, minus, plus, point, root, times, unit
+from lightproof.certify.emitters import Formula
+from lightproof.certify.planes import Plane
+
+
+def tube_light(shape: geometry.Cylinder, radiance: float, receiver: Plane) -> Formula:
+    """Irradiance [W/m2] from the outside of a cylinder's wall, for receivers outside the infinite cylinder."""
+    base, radius, normal = point(shape.base), exact(shape.radius), unit(receiver.normal)
+    axis = times(point(shape.axis), 1 / balls.exact_root(dot(point(shape.axis), point(shape.axis))))
+
+    def irradiance(x: Vector) -> Ball:
+        low = dot(axis, minus(base, x))
+        offset = minus(minus(base, x), times(axis, low))
+        ends = low, low + exact(shape.height)
+        rims = [_rim(offset, axis, radius, end, normal) for end in ends]
+        return exact(radiance) * (rims[1] - rims[0] + _lines(offset, axis, radius, ends, normal)) / 2
+
+    return irradiance
+
+
+def _lines(offset: Vector, axis: Vector, radius: Number, ends: tuple[Ball, Ball], normal: Vector) -> Ball:
+    """The two straight parts: angle times cosine, up the one and down the other."""
+    reach = root(dot(offset, offset) - radius * radius)
+    angle = arctan(ends[1] / reach) - arctan(ends[0] / reach)
+    between = times(cross(axis, offset), 2 * radius / dot(offset, offset))
+    return angle * dot(normal, cross(between, axis))
+
+
+def _rim(offset: Vector, axis: Vector, radius: Number, height: Ball, normal: Vector) -> Ball:
+    """The nearer half of a rim, counter-clockwise about the axis: on it |r|^2 = p - q cos f, f from -end to end."""
+    square = dot(offset, offset)
+    distance = root(square)
+    end = arctan(root(square - radius * radius) / radius)
+    p, q = square + height * height + radius * radius, 2 * radius * distance
+    d = root((height * height + (distance - radius) ** 2) * (height * height + (distance + radius) ** 2))
+    whole = 4 / d * arctan((p + q) / d * (end / 2).tan())
+    cosines = (p * whole - 2 * end) / q
+    first = times(offset, -1 / distance)
+    centre = plus(offset, times(axis, height))
+    return radius * (radius * dot(normal, axis) * whole + dot(normal, cross(centre, cross(axis, first))) * cosines)
