@@ -72,10 +72,12 @@ def _module(light: scene.Light, blockers: list[Shape]) -> ModuleType:
 
 def mean_over(frame: Frame, lights: list[Field], region: Region) -> arb:
     """Mean irradiance over a convex region of a plane film. Raises CannotCertify."""
-    if any(light.events is None for light in lights):
+    others = [light for light in lights if light.flux is None]
+    if any(light.events is None for light in others):
         raise CannotCertify("the shadows of several blockers may meet on the film, in curves that are not covered")
-    lines = {line for light in lights for event in light.events if (line := frame.line(event))}
-    total = sum((_flux(frame, lights, part) for part in planes.cut(region, sorted(lines))), arb(0))
+    lines = {line for light in others for event in light.events if (line := frame.line(event))}
+    total = sum((_flux(frame, others, part) for part in planes.cut(region, sorted(lines))), arb(0))
+    total += sum((light.flux(frame, region) for light in lights if light.flux), arb(0))
     return total / planes.area(region)
 
 

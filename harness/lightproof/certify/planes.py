@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from flint import fmpq
+from flint import arb, fmpq
 
 from lightproof.certify.balls import Ball, Point, Rational, Vector, cross, dot, exact, minus, plus, point, times, unit
 from lightproof.certify.polygon import area_vector
@@ -26,6 +26,10 @@ class Plane:
     def height(self, x: Vector) -> Ball:
         """normal . x - offset: positive in front."""
         return dot(self.normal, x) - self.offset
+
+    def parts(self, above: Iterable[Point], below: Iterable[Point]) -> bool:
+        """Whether some points are in front of the plane or on it, and others behind it or on it."""
+        return all(self.height(x) >= 0 for x in above) and all(self.height(x) <= 0 for x in below)
 
     @property
     def turned(self) -> Plane:
@@ -121,6 +125,32 @@ def _side(region: Region, heights: Sequence[Rational]) -> Region:
     return tuple(kept)
 
 
+def in_front(frame: Frame, region: Region, plane: Plane) -> list[Region]:
+    """The part of a region that is in front of a plane."""
+    line = frame.line(plane)
+    return [part for part in cut(region, [line] if line else []) if plane.height(frame.at(*centre(part))) > 0]
+
+
+def chord(region: Region, line: Line) -> tuple[Flat, Flat] | None:
+    """The ends of the part of a line that is inside a convex region; None where it does not pass through."""
+    heights = [line[0] + line[1] * p + line[2] * q for p, q in region]
+    if all(height >= 0 for height in heights) or all(height <= 0 for height in heights):
+        return None
+    sides = (_side(region, heights), _side(region, [-height for height in heights]))
+    first, second = (end for end in sides[0] if end in sides[1])
+    return first, second
+
+
+def inside(region: Region) -> Flat:
+    """A point inside a region near its centre, with as few digits as it takes."""
+    middle, bits = centre(region), 16
+    while True:
+        near = tuple(fmpq((axis * 2**bits).floor()) / 2**bits for axis in middle)
+        if all(area((region[i - 1], region[i], near)) > 0 for i in range(len(region))):
+            return near
+        bits *= 2
+
+
 def centre(region: Region) -> Flat:
     """The mean of a region's corners: a point inside it."""
     return tuple(sum(axis, fmpq(0)) / len(region) for axis in zip(*region, strict=True))
@@ -136,17 +166,17 @@ def area(region: Region) -> Rational:
 class Patch:
     """A convex quadrilateral as the bilinear image of the square [-1, 1]^2: position = m + s a + t b + s t c."""
 
-    m: Flat
-    a: Flat
-    b: Flat
-    c: Flat
+    m: tuple[Ball, Ball]
+    a: tuple[Ball, Ball]
+    b: tuple[Ball, Ball]
+    c: tuple[Ball, Ball]
 
     @classmethod
     def of(cls, corners: Sequence[Flat]) -> Patch:
         """The patch with these four corners, counter-clockwise; two neighbours may be equal."""
         signs = ((1, 1, 1, 1), (-1, 1, 1, -1), (-1, -1, 1, 1), (1, -1, 1, -1))
         axes = list(zip(*corners, strict=True))
-        return cls(*(tuple(_signed(row, axis) / 4 for axis in axes) for row in signs))
+        return cls(*(tuple(arb(_signed(row, axis) / 4) for axis in axes) for row in signs))
 
     def at(self, s: Ball, t: Ball) -> tuple[Ball, Ball]:
         """The position of (s, t)."""

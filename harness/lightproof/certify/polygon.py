@@ -1,8 +1,8 @@
-"""Irradiance from a polygon, and from what blockers leave of it, at one receiver.
+"""What a receiver sees of a polygon, and what blockers leave of it.
 
 Seen from the receiver every edge lies on a great circle, whose normal is linear in the receiver's position, and every
 corner is where two such circles meet. So a visible part is just a loop of edges: which edges, is decided once in exact
-arithmetic; how much light, follows by Lambert's formula for any receiver nearby.
+arithmetic; how much light, follows by Lambert's formula (`contour`) for any receiver nearby.
 """
 
 from __future__ import annotations
@@ -12,9 +12,8 @@ from collections.abc import Sequence
 from functools import reduce
 from itertools import pairwise
 
-from flint import arb
-
-from lightproof.certify.balls import Ball, Number, Point, Vector, angle, cross, dot, minus, plus, root, times
+from lightproof.certify import convex
+from lightproof.certify.balls import Number, Point, Vector, cross, dot, minus, plus, times
 
 Edge = tuple[Point, Point]
 Loop = tuple[Edge, ...]  # runs round so that edge normals point inwards
@@ -52,14 +51,8 @@ def clip(corners: Sequence[Point], normal: Point, offset: Number) -> tuple[Point
 
 
 def convex_parts(corners: Sequence[Point]) -> Parts:
-    """Convex polygons with signs that add up to the polygon: itself, or the triangles of a fan."""
-    front = area_vector(corners)
-    triangles = [(corners[0], b, c) for b, c in pairwise(corners[1:])]
-    turns = [dot(front, area_vector((corners[i - 2], corners[i - 1], corners[i]))) for i in range(len(corners))]
-    if all(turn >= 0 for turn in turns):
-        return ((1, tuple(corners)),)
-    signs = [dot(front, area_vector(triangle)) for triangle in triangles]
-    return tuple((1 if sign > 0 else -1, triangle) for sign, triangle in zip(signs, triangles, strict=True) if sign != 0)
+    """Convex polygons that tile a simple polygon. Raises CannotCertify where it is not simple."""
+    return tuple((1, part) for part in convex.parts(corners, area_vector(corners)))
 
 
 def visible(light: Parts, blockers: Sequence[Parts], receiver: Point) -> Counter[Loop]:
@@ -83,6 +76,17 @@ def _uncovered(light: Loop, blockers: Sequence[Parts], receiver: Point) -> Count
             for part, count in _uncovered(hidden, others, receiver).items():
                 seen[part] -= sign * count
     return seen
+
+
+def difference(a: Loop, b: Loop, receiver: Point) -> list[Loop]:
+    """Convex loops that tile what of one convex loop is outside another."""
+    if not intersection(a, b, receiver):
+        return [a]
+    rest = []
+    for start, end in b:
+        rest.append(_half(a, (end, start), receiver))
+        a = _half(a, (start, end), receiver)
+    return [part for part in rest if part]
 
 
 def intersection(a: Loop, b: Loop, receiver: Point) -> Loop:
@@ -119,19 +123,3 @@ def corners_of(edges: Loop, receiver: Vector) -> list[Vector]:
         minus(after[0], receiver) if before[1] == after[0] else cross(circle(before, receiver), circle(after, receiver))
         for before, after in zip(edges[-1:] + edges[:-1], edges, strict=True)
     ]
-
-
-def lambert(edges: Loop, receiver: Vector, normal: Vector) -> Ball:
-    """Irradiance per radiance [sr] from a loop above the horizon of a receiver with unit `normal` (Lambert 1760; Arvo 1995):
-    half the sum over edges of angle times cosine. Angles are signed, so it stays analytic where an edge vanishes."""
-    corners = corners_of(edges, receiver)
-    lengths = [root(dot(corner, corner)) for corner in corners]
-    total = arb(0)
-    for i, edge in enumerate(edges):
-        j = (i + 1) % len(edges)
-        inwards = circle(edge, receiver)
-        length = root(dot(inwards, inwards))
-        whole = edges[i - 1][1] == edge[0] and edge[1] == edges[j][0]
-        sine = length if whole else dot(cross(corners[i], corners[j]), inwards) / length
-        total += angle(sine, dot(corners[i], corners[j]), lengths[i] * lengths[j]) * dot(inwards, normal) / length
-    return total / 2

@@ -31,10 +31,11 @@ def mean(f: Integrand) -> arb:
     return integral(f) / 4
 
 
-def integral(f: Integrand, depth: int = DEPTH) -> arb:
-    """Encloses the integral of f over the square, halved along each side where f is not analytic far enough around it."""
+def integral(f: Integrand, scale: arb | None = None, depth: int = DEPTH) -> arb:
+    """Encloses the integral of f over the square, halved along each side where f is not analytic far enough around it. The
+    error aimed at is `scale`, that of f in the middle unless given, over 2^GOAL."""
     whole = acb(arb(0, 1))
-    scale = f(arb(0), arb(0)).abs_upper()
+    scale = f(arb(0), arb(0)).abs_upper() if scale is None else scale
     across = _order(lambda ellipse: f(ellipse, whole), scale)
     along = _order(lambda ellipse: f(whole, ellipse), scale)
     if across and along:
@@ -42,7 +43,7 @@ def integral(f: Integrand, depth: int = DEPTH) -> arb:
     if not depth:
         raise CannotCertify("the irradiance is not smooth enough somewhere on the film")
     parts = [_part(f, s, t) for s in (WHOLE if across else HALVES) for t in (WHOLE if along else HALVES)]
-    return sum((integral(part, depth - 1) for part in parts), arb(0)) / len(parts)
+    return sum((integral(part, scale, depth - 1) for part in parts), arb(0)) / len(parts)
 
 
 def _part(f: Integrand, across: tuple[fmpq, fmpq], along: tuple[fmpq, fmpq]) -> Integrand:
@@ -57,11 +58,17 @@ def _order(f: Callable[[acb], Ball], scale: arb) -> tuple[int, arb] | None:
         bound = f(acb(arb(0, (rho + 1 / rho) / 2), arb(0, (rho - 1 / rho) / 2))).abs_upper()
         if not bound.is_finite():
             continue
-        excess = max(0.0, math.log2(float(bound / scale))) if scale > 0 else 0.0
-        nodes = max(2, math.ceil((GOAL + 3 + excess) / (2 * math.log2(rho))))
-        if nodes <= MOST_NODES and (best is None or nodes < best[0]):
+        nodes = max(1, math.ceil((GOAL + 3 + _bits(bound, scale)) / (2 * math.log2(rho))))
+        if best and nodes > best[0]:
+            break
+        if nodes <= MOST_NODES:
             best = nodes, arb(64) / 15 * bound * arb(rho) ** (-2 * nodes) / (1 - arb(rho) ** -2)
     return best
+
+
+def _bits(bound: arb, scale: arb) -> float:
+    """log2 of a bound over the scale."""
+    return math.log2(float(bound / scale)) if bound > 0 and scale > 0 else 0.0
 
 
 def _rule(f: Integrand, across: int, along: int) -> arb:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from functools import cache
 
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import emitters, planes, provenance
+from lightproof.certify import contour, planes, provenance
 from lightproof.certify.balls import CannotCertify, Point, exact, point, unit
+from lightproof.certify.contour import Contour
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
-from lightproof.certify.planes import Plane
-from lightproof.certify.polygon import Parts, clip, convex_parts, lambert, visible
+from lightproof.certify.overlaps import Overlaps
+from lightproof.certify.planes import Frame, Plane, Region
+from lightproof.certify.polygon import clip, convex_parts, difference, loop
 from lightproof.certify.provenance import Provenance
+from lightproof.certify.sightlines import Convex
 from lightproof.scene import AreaLight
 
 
@@ -29,38 +32,47 @@ def provenance_of(light: AreaLight, blockers: list[Shape]) -> Provenance:
 
 
 def field(light: AreaLight, blockers: list[Shape], receiver: Plane) -> Field:
-    """Lambert's formula for what the receiver sees of a polygon light above its horizon and past the blockers."""
+    """Lambert's formula for what the receiver sees of a polygon light above its horizon and past the blockers. Raises
+    CannotCertify."""
     corners = tuple(point(corner) for corner in light.shape.vertices)
-    face = planes.of(corners)
-    above = clip(corners, receiver.normal, receiver.offset)
-    between = tuple(filter(None, (_blocker(blocker, face, receiver) for blocker in blockers)))
-    parts = convex_parts(above) if above else ()
-    normal = unit(receiver.normal)
+    face, radiance, normal = planes.of(corners), exact(light.radiance), unit(receiver.normal)
+    between = tuple(part for blocker in blockers for part in above(_polygon(blocker), receiver, face))
+    parts = above(corners, receiver)
+
+    def near(x: Point) -> Formula:
+        pieces = _seen(parts, between, x) if face.height(x) > 0 else []
+        contours = [Contour.of(piece, x) for piece in pieces]
+        return lambda y: radiance * contour.total(contours, y, normal)
 
     @cache
-    def near(x: Point) -> Formula:
-        if face.height(x) <= 0:
-            return emitters.dark
-        loops = visible(parts, between, x)
-        return lambda y: exact(light.radiance) * sum((count * lambert(loop, y, normal) for loop, count in loops.items()), arb(0))
+    def overlaps(frame: Frame) -> list[Overlaps]:
+        return [Overlaps(frame, normal, part, between) for part in parts]
 
-    return Field(near, (face, *_events(parts, between)) if len(between) < 2 else None)
+    def flux(frame: Frame, region: Region) -> arb:
+        fluxes = (one.flux(facing) for facing in planes.in_front(frame, region, face) for one in overlaps(frame))
+        return radiance * sum(fluxes, arb(0))
+
+    return Field(near, None, flux)
 
 
-def _blocker(shape: Shape, face: Plane, receiver: Plane) -> Parts:
-    """The part of a blocker between the receiver's plane and the light's."""
+def above(corners: Convex, *floors: Plane) -> tuple[Convex, ...]:
+    """Convex polygons that tile the part of a polygon in front of some planes."""
+    parts = [part for _, part in convex_parts(corners)]
+    for floor in floors:
+        parts = [kept for part in parts if (kept := clip(part, floor.normal, floor.offset))]
+    return tuple(parts)
+
+
+def _polygon(shape: Shape) -> Convex:
     if not isinstance(shape, geometry.Polygon):
         raise CannotCertify(f"a {type(shape).__name__.lower()} stands before a polygon light; only polygon blockers are covered")
-    corners = clip(tuple(point(corner) for corner in shape.vertices), receiver.normal, receiver.offset)
-    corners = clip(corners, face.normal, face.offset) if corners else ()
-    return convex_parts(corners) if corners else ()
+    return tuple(point(corner) for corner in shape.vertices)
 
 
-def _events(light: Parts, blockers: tuple[Parts, ...]) -> Iterable[Plane]:
-    """The planes in which a corner of the light is seen on an edge of the blocker, or the other way round, or the blocker is
-    seen edge-on."""
-    for _, corners in light:
-        for _, shadow in (part for blocker in blockers for part in blocker):
-            yield planes.of(shadow)
-            for points, edges in ((corners, shadow), (shadow, corners)):
-                yield from (planes.through(p, edges[i - 1], edges[i]) for p in points for i in range(len(edges)))
+def _seen(light: Sequence[Convex], blockers: Sequence[Convex], x: Point) -> list:
+    """Convex loops that tile what a receiver sees of a light past blockers."""
+    pieces = [loop(part, x) for part in light]
+    for blocker in blockers:
+        shade = loop(blocker, x)
+        pieces = [rest for piece in pieces for rest in difference(piece, shade, x)]
+    return [piece for piece in pieces if piece]

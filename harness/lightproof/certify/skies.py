@@ -22,7 +22,7 @@ from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
 from lightproof.certify.loops import Region, cut, second_moment, shadow
 from lightproof.certify.planes import Plane
-from lightproof.certify.polygon import Parts, clip, convex_parts
+from lightproof.certify.polygon import Parts, convex_parts
 from lightproof.certify.provenance import Provenance
 from lightproof.certify.rounded import projected
 
@@ -99,9 +99,9 @@ def _screen(light: Sky, blockers: Sequence[Shape], receiver: Plane) -> _Screen:
         if not isinstance(blocker, geometry.Polygon | geometry.Sphere):
             raise CannotCertify(f"a {type(blocker).__name__.lower()} stands before '{light.id}'; only polygons and spheres may")
     polygons = [tuple(map(point, blocker.vertices)) for blocker in blockers if isinstance(blocker, geometry.Polygon)]
-    above = filter(None, (clip(corners, receiver.normal, receiver.offset) for corners in polygons))
+    above = filter(None, (cut(convex_parts(corners), receiver) for corners in polygons))
     spheres = tuple(blocker for blocker in blockers if isinstance(blocker, geometry.Sphere))
-    return _Screen(receiver, tuple(map(convex_parts, above)), spheres, _level(light, receiver))
+    return _Screen(receiver, tuple(above), spheres, _level(light, receiver))
 
 
 def _level(light: Sky, receiver: Plane) -> bool:
