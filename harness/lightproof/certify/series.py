@@ -9,7 +9,7 @@ from lightproof.scene import Surface
 
 
 def total(step: arb_mat, first: arb_mat, last: int | str) -> arb_mat:
-    """first + step first + ... + step^last first, nothing where `last` is -1; without an end where it is "all".
+    """first + step first + ... + step^last first, nothing where `last` is negative; without an end where it is "all".
 
     Finite sums stand in the corner of a power of the block matrix (step 1; 0 1): nothing is divided, so that nothing is lost
     where `step` is all but 1.
@@ -19,7 +19,7 @@ def total(step: arb_mat, first: arb_mat, last: int | str) -> arb_mat:
         return (arb_mat(size, size, 1) - step).solve(first)
     block = arb_mat([[step[i, j] for j in range(size)] + [int(i == j) for j in range(size)] for i in range(size)]
                     + [[0] * size + [int(i == j) for j in range(size)] for i in range(size)])
-    power = block ** (last + 1)
+    power = block ** max(last + 1, 0)
     return arb_mat([[power[i, size + j] for j in range(size)] for i in range(size)]) * first
 
 
