@@ -19,9 +19,10 @@ from lightproof.scene import CameraFilm
 Ray = tuple[Vector, Vector]  # start and direction, of any length
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Camera:
-    """A pinhole or orthographic camera; `half` is how far along x and how far along y half its width reaches."""
+    """A pinhole or orthographic camera; `half` is how far along x and how far along y half its width reaches. Each is equal to
+    itself alone: balls have no equality."""
 
     columns: int
     rows: int
@@ -62,6 +63,13 @@ class Camera:
         low, high = ((self.rows - 2 * row - i) * height for i in (2, 0))
         return (left, low), (right, low), (right, high), (left, high)
 
+    def wide(self, pixel: Region) -> Region:
+        """What holds a pixel and its true square: a little more on all sides."""
+        (left, low), (right, high) = pixel[0], pixel[2]
+        width, height = ((right - left) / 2**64, (high - low) / 2**64)
+        left, low, right, high = left - width, low - height, right + width, high + height
+        return (left, low), (right, low), (right, high), (left, high)
+
     @property
     def blur(self) -> arb:
         """Bounds how far a pixel's mean is from that over `pixel`, per largest value in either.
@@ -86,10 +94,23 @@ class View:
     camera: Camera
     plane: Plane
 
-    def at(self, x: Ball, y: Ball) -> Vector:
-        """Where the ray through (x, y) meets the plane."""
-        start, along = self.camera.ray(x, y)
-        return plus(start, times(along, self.reach(start, along)))
+    def at(self, x: Number, y: Number) -> Vector:
+        """Where the ray through (x, y) meets the plane; for balls written around their middle, so that its ball is narrow.
+
+        Off a ray along w by x r + y u the ray is along w + x r + y u, and with e = (x n.r + y n.u) / n.w it meets the plane off
+        by reach (x (r - w n.r/n.w) + y (u - w n.u/n.w)) / (1 + e): by the same without reach and e where rays are parallel.
+        """
+        if isinstance(x, fmpq):
+            start, along = self.camera.ray(x, y)
+            return plus(start, times(along, self.reach(start, along)))
+        start, along = self.camera.ray(x.mid(), y.mid())
+        reach, off = self.reach(start, along), (x - x.mid(), y - y.mid())
+        sides, normal = (self.camera.right, self.camera.up), self.plane.normal
+        slopes = [dot(normal, side) / dot(normal, along) for side in sides]
+        steps = [minus(side, times(along, slope)) for side, slope in zip(sides, slopes, strict=True)]
+        scale = 1 if self.camera.parallel else reach / (1 + off[0] * slopes[0] + off[1] * slopes[1])
+        offset = plus(times(steps[0], off[0] * scale), times(steps[1], off[1] * scale))
+        return plus(plus(start, times(along, reach)), offset)
 
     def reach(self, start: Vector, along: Vector) -> Number:
         """How far along a ray it meets the plane, in lengths of `along`."""

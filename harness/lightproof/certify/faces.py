@@ -10,7 +10,6 @@ from lightproof.certify import planes
 from lightproof.certify.balls import CannotCertify, Point, Rational, cross, dot, exact, plus, point, times
 from lightproof.certify.camera import Camera, View
 from lightproof.certify.planes import Flat, Line, Plane
-from lightproof.certify.polygon import area_vector
 from lightproof.scene import AreaLight, Surface
 
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
@@ -27,11 +26,9 @@ class Face:
     reflectance: Rational
 
     @classmethod
-    def of(cls, item: AreaLight | Surface, camera: Camera, reflectance: float) -> Face | None:
-        """The face of a polygon; None where it has no area."""
+    def of(cls, item: AreaLight | Surface, camera: Camera, reflectance: float) -> Face:
+        """The face of a polygon."""
         corners = tuple(point(corner) for corner in item.shape.vertices)
-        if not any(area_vector(corners)):
-            return None
         return cls(item.id, corners, View(camera, planes.of(corners)), exact(item.radiance), exact(reflectance))
 
     @property

@@ -52,18 +52,30 @@ def solve(scene_: Scene) -> Element:
         if face is None:
             return skies_seen.radiance(scene_.lights, camera, region)
         if not _in_front(face, region):
-            return arb(0)
+            return fmpq(0)
         if not face.reflectance:
             return face.radiance
         return face.radiance + face.reflectance / arb.pi() * direct.mean_over(face.view, fields(face.plane), region)
 
+    def parts(region: Region) -> list[tuple[Rational, Number]]:
+        return [(planes.area(part), radiance(part)) for part in planes.cut(region, lines)]
+
     def element(index: int) -> arb:
         pixel = camera.pixel(index)
         _check_round(scene_, camera, pixel)
-        total = sum((planes.area(part) * radiance(part) for part in planes.cut(pixel, lines)), arb(0))
+        shown = parts(pixel)
+        if _level(shown) and _level([*shown, *parts(camera.wide(pixel))]):
+            return arb(shown[0][1])
+        total = sum((area * value for area, value in shown), arb(0))
         return total / planes.area(pixel) + arb(0, error.abs_upper())
 
     return element
+
+
+def _level(shown: list[tuple[Rational, Number]]) -> bool:
+    """Whether all parts show the same radiance, known without error."""
+    values = [arb(value) for _, value in shown]
+    return all(value.is_exact() and value == values[0] for value in values)
 
 
 def _in_front(face: Face, region: Region) -> bool:
@@ -72,15 +84,16 @@ def _in_front(face: Face, region: Region) -> bool:
 
 
 def _polygons(scene_: Scene, camera: Camera) -> list[Face]:
-    """All polygons that have an area. Raises CannotCertify where the camera lies in one."""
-    found = []
-    for item in _solids(scene_):
-        if isinstance(item.shape, geometry.Polygon):
-            reflectance = item.reflectance if isinstance(item, Surface) and scene_.max_bounces != 0 else 0.0
-            found.append(Face.of(item, camera, reflectance))
-    for face in filter(None, found):
+    """All polygons. Raises CannotCertify where the camera lies in one."""
+    polygons = [Face.of(item, camera, _reflectance(item, scene_)) for item in _solids(scene_)
+                if isinstance(item.shape, geometry.Polygon)]
+    for face in polygons:
         face.check_apart(camera)
-    return list(filter(None, found))
+    return polygons
+
+
+def _reflectance(item: AreaLight | Surface, scene_: Scene) -> float:
+    return item.reflectance if isinstance(item, Surface) and scene_.max_bounces != 0 else 0.0
 
 
 def _solids(scene_: Scene) -> list[AreaLight | Surface]:
