@@ -1,9 +1,9 @@
-"""Second derivation for square-light: flux from polygon to cell as a double contour integral of ln r.
+"""Second derivation for lights that are polygons: flux from polygon to cell as a double contour integral of ln r.
 
 Stokes' theorem on both sides turns the flux into (L/2) times the sum over a cell's edges and the light's of the integral of
-ln r dx . dy (Schröder and Hanrahan 1993). Along the light's edge it is elementary,
-along the cell's a 24-point Gauss rule; 30 digits, as distant edges nearly cancel. The part of the light behind the film's
-plane is cut off first. Prints the base case as JSON.
+ln r dx . dy (Schröder and Hanrahan 1993). Along the light's edge it is elementary, along the cell's a 16-point Gauss rule; 30
+digits, as distant edges nearly cancel; 32 points give the same binary64. The part of the light behind the film's plane is cut
+off first. Prints the base cases as JSON.
 """
 
 import json
@@ -14,7 +14,8 @@ from pathlib import Path
 from mpmath import atan, log, mp, mpf, sqrt
 
 mp.dps = 30
-NODES = 24
+RULE = list(zip(*mp.gauss_quadrature(16), strict=True))  # nodes and weights on [-1, 1]
+SCENES = ("square-light", "triangle-light")
 
 
 def values(scene, elements):
@@ -47,8 +48,10 @@ def values(scene, elements):
 def contour(p, q, a, b):
     """The integral of ln |x - y| dx . dy for x from p to q and y from a to b."""
     side, other = sub(q, p), sub(b, a)
+    if not dot(side, other):
+        return mpf(0)
     length = sqrt(dot(other, other))
-    total = sum(weight * ln_along(add(p, scale(side, (1 + node) / 2)), a, other, length) for node, weight in gauss(NODES)) / 2
+    total = sum(weight * ln_along(add(p, scale(side, (1 + node) / 2)), a, other, length) for node, weight in RULE) / 2
     return total * dot(side, other) / length
 
 
@@ -61,22 +64,6 @@ def ln_along(x, a, other, length):
         return u * log(u * u + distance**2) / 2 - u + distance * atan(u / distance) if distance else u * log(abs(u)) - u
 
     return antiderivative(start + length) - antiderivative(start)
-
-
-@cache
-def gauss(count):
-    """Nodes and weights of the Gauss-Legendre rule on [-1, 1]: Newton's method on the recurrence of the polynomials."""
-    rule = []
-    for k in range(count):
-        x = mp.cos(mp.pi * (k + mpf(3) / 4) / (count + mpf(1) / 2))
-        for _ in range(8):
-            before, here = mpf(1), x
-            for n in range(2, count + 1):
-                before, here = here, ((2 * n - 1) * x * here - (n - 1) * before) / n
-            slope = count * (x * here - before) / (x * x - 1)
-            x -= here / slope
-        rule.append((x, 2 / ((1 - x * x) * slope**2)))
-    return rule
 
 
 def in_front(corners, origin, normal):
@@ -116,7 +103,12 @@ def cross(a, b):
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-if __name__ == "__main__":
-    scene = tomllib.loads((Path(__file__).resolve().parents[1] / "scenes/square-light.toml").read_text(encoding="utf-8"))
+def base(name):
+    """The base case of a scene."""
+    scene = tomllib.loads((Path(__file__).resolve().parents[1] / f"scenes/{name}.toml").read_text(encoding="utf-8"))
     columns, rows = scene["film"]["resolution"]
-    print(json.dumps({"base": dict(enumerate(values(scene, range(columns * rows))))}))
+    return dict(enumerate(values(scene, range(columns * rows))))
+
+
+if __name__ == "__main__":
+    print(json.dumps({name: base(name) for name in SCENES}))
