@@ -11,13 +11,13 @@ from types import ModuleType
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import curved, emitters, planes, provenance, quadrature, shadows, skies, unblocked
-from lightproof.certify.balls import Ball, CannotCertify, Element, dot, exact, point
+from lightproof.certify import contact, curved, emitters, planes, provenance, quadrature, shadows, skies, unblocked
+from lightproof.certify.balls import Ball, CannotCertify, Element, Point, dot, exact, point
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
 from lightproof.certify.planes import Frame, Patch, Plane, Region
 from lightproof.certify.provenance import Provenance
-from lightproof.scene import AreaLight, PlaneFilm, PointsFilm, Scene
+from lightproof.scene import AreaLight, PlaneFilm, PointsFilm, Scene, Surface
 
 FIELDS: tuple[ModuleType, ...] = (curved, shadows, skies, unblocked)
 ROUNDING = exact(1e-15)  # of a corner's coordinates: how far above a plane a corner counts as lying on it
@@ -113,4 +113,19 @@ def solve(scene_: Scene) -> Element:
 def at_point(scene_: Scene, position: geometry.Vec3, normal: geometry.Vec3) -> arb:
     """Irradiance of one receiver. Raises CannotCertify."""
     x, n = point(position), point(normal)
-    return sum((light.near(x)(x) for light in fields(scene_, Plane(n, dot(n, x)))), arb(0))
+    receiver = Plane(n, dot(n, x))
+    _check_contact(scene_, x, receiver)
+    return sum((light.near(x)(x) for light in fields(scene_, receiver)), arb(0))
+
+
+def _check_contact(scene_: Scene, x: Point, receiver: Plane) -> None:
+    """A receiver may lie on polygons, where there are no other shapes or lights. Raises CannotCertify."""
+    things = [thing for thing in (*scene_.lights, *scene_.surfaces) if isinstance(thing, AreaLight | Surface)]
+    flat = len(things) == len(scene_.lights) + len(scene_.surfaces) and all(map(_is_polygon, things))
+    for thing in things:
+        if not flat and not lies_on(thing.shape, receiver) and contact.touches(thing.shape, x, receiver.normal):
+            raise CannotCertify(f"a receiver lies on '{thing.id}'; that is covered where all lights and surfaces are polygons")
+
+
+def _is_polygon(thing: AreaLight | Surface) -> bool:
+    return isinstance(thing.shape, geometry.Polygon)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import contour, planes, provenance
-from lightproof.certify.balls import CannotCertify, Point, exact, point, unit
+from lightproof.certify import contact, contour, planes, provenance
+from lightproof.certify.balls import CannotCertify, Point, dot, exact, point, unit
 from lightproof.certify.contour import Contour
 from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
@@ -40,7 +40,8 @@ def field(light: AreaLight, blockers: list[Shape], receiver: Plane) -> Field:
     parts = above(corners, receiver)
 
     def near(x: Point) -> Formula:
-        pieces = _seen(parts, between, x) if face.height(x) > 0 else []
+        lamp, shades = (contact.limit(tiles, x, receiver.normal) for tiles in (parts, between))
+        pieces = _seen(_clipped(lamp, receiver), shades, x) if _faces(face, x, receiver) else []
         contours = [Contour.of(piece, x) for piece in pieces]
         return lambda y: radiance * contour.total(contours, y, normal)
 
@@ -59,8 +60,18 @@ def above(corners: Convex, *floors: Plane) -> tuple[Convex, ...]:
     """Convex polygons that tile the part of a polygon in front of some planes."""
     parts = [part for _, part in convex_parts(corners)]
     for floor in floors:
-        parts = [kept for part in parts if (kept := clip(part, floor.normal, floor.offset))]
+        parts = _clipped(parts, floor)
     return tuple(parts)
+
+
+def _clipped(parts: Iterable[Convex], floor: Plane) -> list[Convex]:
+    return [kept for part in parts if (kept := clip(part, floor.normal, floor.offset))]
+
+
+def _faces(face: Plane, x: Point, receiver: Plane) -> bool:
+    """Whether a receiver is in front of a light, or in its plane and comes from the front."""
+    height = face.height(x)
+    return bool(height > 0 or (height == 0 and dot(face.normal, receiver.normal) > 0))
 
 
 def _polygon(shape: Shape) -> Convex:

@@ -1,0 +1,59 @@
+"""Receivers that lie on something: what they see is the limit as they come to it along their normal, from their own side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from flint import arb
+
+from lightproof import geometry
+from lightproof.certify.balls import Point, cross, dot, exact, minus, point, root
+from lightproof.certify.polygon import area_vector, convex_parts
+
+Convex = tuple[Point, ...]
+
+
+def touches(shape: geometry.Shape, x: Point, normal: Point) -> bool:
+    """Whether x lies on a shape and leaves it along `normal`: what it sees then depends on the side it comes from."""
+    match shape:
+        case geometry.Polygon():
+            parts = convex_parts([point(corner) for corner in shape.vertices])
+            return any(_leaves(part, x, normal) for _, part in parts)
+        case geometry.Disk():
+            axis, ray = point(shape.normal), minus(x, point(shape.center))
+            tilted = dot(axis, normal) != 0 and any(cross(axis, normal))
+            return bool(tilted and dot(axis, ray) == 0 and dot(ray, ray) <= exact(shape.radius) ** 2)
+        case geometry.Cylinder():
+            return _on_cylinder(shape, x)
+    ray = minus(x, point(shape.center))
+    return bool(dot(ray, ray) == exact(shape.radius) ** 2)
+
+
+def limit(parts: Iterable[Convex], x: Point, normal: Point) -> tuple[Convex, ...]:
+    """Convex polygons as they are seen from x + e `normal` as e goes to 0: one that x lies on becomes the cone of directions in
+    which it then is, as triangles with a corner straight behind x."""
+    behind = minus(x, normal)
+    return tuple(piece for part in parts for piece in (_cone(part, x, behind) if _leaves(part, x, normal) else (part,)))
+
+
+def _leaves(convex: Convex, x: Point, normal: Point) -> bool:
+    """Whether x lies on a convex polygon, its edges included, and `normal` leads out of its plane."""
+    front = area_vector(convex)
+    if dot(front, minus(x, convex[0])) != 0 or dot(front, normal) == 0:
+        return False
+    return all(dot(front, cross(minus(end, start), minus(x, start))) >= 0 for start, end in _edges(convex))
+
+
+def _cone(convex: Convex, x: Point, behind: Point) -> tuple[Convex, ...]:
+    return tuple((start, end, behind) for start, end in _edges(convex) if any(cross(minus(start, x), minus(end, x))))
+
+
+def _edges(convex: Convex) -> Iterable[tuple[Point, Point]]:
+    return zip(convex, (*convex[1:], convex[0]), strict=True)
+
+
+def _on_cylinder(shape: geometry.Cylinder, x: Point) -> bool:
+    axis, ray = point(shape.axis), minus(x, point(shape.base))
+    aside, square, along = cross(ray, axis), dot(axis, axis), dot(ray, axis)
+    reach = exact(shape.height) * root(square)
+    return bool(dot(aside, aside) == exact(shape.radius) ** 2 * square and along >= 0 and not arb(along) > reach)
