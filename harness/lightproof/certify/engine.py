@@ -17,6 +17,7 @@ import numpy as np
 from flint import arb, ctx
 
 from lightproof.certify import (
+    ball_seen,
     coaxial_disks,
     concentric,
     direct,
@@ -31,8 +32,8 @@ from lightproof.scene import PointsFilm, Scene
 
 MOST_PRECISION = 4096  # bits
 NARROW = 60  # bits of a value at a point that a ball has to give
-SOLVERS: tuple[ModuleType, ...] = (sphere_interior, concentric, enclosure, pictures, coaxial_disks, one_reflection, solid_angle,
-                                    direct)
+SOLVERS: tuple[ModuleType, ...] = (sphere_interior, concentric, enclosure, ball_seen, pictures, coaxial_disks, one_reflection,
+                                    solid_angle, direct)
 
 
 @dataclass(frozen=True)
