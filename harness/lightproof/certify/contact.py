@@ -1,4 +1,5 @@
-"""Receivers that lie on something: what they see is the limit as they come to it along their normal, from their own side."""
+"""What touches: receivers that lie on something, which see the limit as they come to it along their normal, from their own side,
+and polygons that overlap in one plane, of which either may be seen."""
 
 from __future__ import annotations
 
@@ -8,7 +9,7 @@ from flint import arb
 
 from lightproof import geometry
 from lightproof.certify.balls import Point, cross, dot, exact, minus, point, root
-from lightproof.certify.polygon import area_vector, convex_parts
+from lightproof.certify.polygon import area_vector, clip, convex_parts
 
 Convex = tuple[Point, ...]
 
@@ -34,6 +35,24 @@ def limit(parts: Iterable[Convex], x: Point, normal: Point) -> tuple[Convex, ...
     which it then is, as triangles with a corner straight behind x."""
     behind = minus(x, normal)
     return tuple(piece for part in parts for piece in (_cone(part, x, behind) if _leaves(part, x, normal) else (part,)))
+
+
+def overlap(a: geometry.Polygon, b: geometry.Polygon) -> bool:
+    """Whether two polygons in one plane have some area in common."""
+    one, other = ([point(corner) for corner in shape.vertices] for shape in (a, b))
+    front = area_vector(one)
+    if any(dot(front, minus(corner, one[0])) != 0 for corner in other):
+        return False
+    return any(_common(part, cutter) for _, part in convex_parts(one) for _, cutter in convex_parts(other))
+
+
+def _common(part: Convex, cutter: Convex) -> bool:
+    """Whether two convex polygons in one plane have some area in common."""
+    front = area_vector(cutter)
+    for start, end in _edges(cutter):
+        inwards = cross(front, minus(end, start))
+        part = clip(part, inwards, dot(inwards, start)) if part else ()
+    return bool(part)
 
 
 def _leaves(convex: Convex, x: Point, normal: Point) -> bool:

@@ -6,6 +6,7 @@ Each light, with what may stand before it, is known by one module of FIELDS, whi
 
 from __future__ import annotations
 
+from itertools import combinations
 from types import ModuleType
 
 from flint import arb
@@ -102,6 +103,7 @@ def solve(scene_: Scene) -> Element:
     """The irradiance of a plane or points film, element by element. Raises CannotCertify."""
     if scene_.reflects:
         raise CannotCertify("light reflected between surfaces is covered inside one sphere only")
+    _check_overlaps(scene_)
     film = scene_.film
     if isinstance(film, PointsFilm):
         return lambda element: at_point(scene_, film.positions[element], film.normals[element])
@@ -118,6 +120,13 @@ def at_point(scene_: Scene, position: geometry.Vec3, normal: geometry.Vec3) -> a
     return sum((light.near(x)(x) for light in fields(scene_, receiver)), arb(0))
 
 
+def _check_overlaps(scene_: Scene) -> None:
+    """Where a light and something else share a part of a plane, either may be the one that is seen. Raises CannotCertify."""
+    for one, other in combinations(filter(_is_polygon, (*scene_.lights, *scene_.surfaces)), 2):
+        if isinstance(one, AreaLight) and contact.overlap(one.shape, other.shape):
+            raise CannotCertify(f"'{one.id}' and '{other.id}' overlap in one plane, where either may be seen; part them")
+
+
 def _check_contact(scene_: Scene, x: Point, receiver: Plane) -> None:
     """A receiver may lie on polygons, where there are no other shapes or lights. Raises CannotCertify."""
     things = [thing for thing in (*scene_.lights, *scene_.surfaces) if isinstance(thing, AreaLight | Surface)]
@@ -127,5 +136,5 @@ def _check_contact(scene_: Scene, x: Point, receiver: Plane) -> None:
             raise CannotCertify(f"a receiver lies on '{thing.id}'; that is covered where all lights and surfaces are polygons")
 
 
-def _is_polygon(thing: AreaLight | Surface) -> bool:
-    return isinstance(thing.shape, geometry.Polygon)
+def _is_polygon(thing: scene.Light | Surface) -> bool:
+    return isinstance(getattr(thing, "shape", None), geometry.Polygon)
