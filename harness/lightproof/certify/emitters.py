@@ -73,7 +73,7 @@ def sphere_light(shape: geometry.Sphere, radiance: float, receiver: Plane) -> Fo
     """Whole: E = pi L (R/d)^2 cos(theta); cut by the horizon: Snyder 1996. The height above a plane is the same everywhere."""
     centre, radius, normal = point(shape.center), exact(shape.radius), unit(receiver.normal)
     height = dot(minus(centre, _foot(receiver)), normal)
-    above = _above(height, radius)
+    above = _exactly_above(receiver.height(centre), radius**2 * dot(receiver.normal, receiver.normal))
     if not above:
         return dark
 
@@ -96,6 +96,13 @@ def _above(height: arb, radius: Number) -> str:
     if height <= -radius:
         return ""
     raise balls.Undecided("the light touches the receiver's horizon too closely to tell on which side it is")
+
+
+def _exactly_above(height: Rational, squared_reach: Rational) -> str:
+    """The same in exact numbers, of any unit, for a sphere that may touch the horizon."""
+    if height * height < squared_reach:
+        return "cut"
+    return "whole" if height > 0 else ""
 
 
 def _sphere(radius: Number, squared: Ball, height: arb, above: str) -> Ball:
