@@ -7,21 +7,47 @@ from dataclasses import dataclass
 
 from flint import arb
 
-from lightproof.certify.balls import Ball, Point, Vector, angle, cross, dot, minus, plus, root, times
-from lightproof.certify.polygon import Edge, Loop
+from lightproof.certify.balls import Ball, Number, Point, Vector, angle, cross, dot, minus, plus, root, times
+from lightproof.certify.polygon import Edge, Loop, circle
 
-Corner = tuple[Vector, int] | None  # a point, and whether its direction or the opposite one is meant
+
+@dataclass(frozen=True)
+class Fixed:
+    """An end of an edge: a corner, or a point in which two lines meet, `along` of its length after its start."""
+
+    along: arb
+    sign: int = 1  # -1 where the opposite direction is meant, as may be on an edge that is continued
+
+    def reach(self, rays: Sequence[Vector]) -> Number:
+        """How far along the edge, in its own length."""
+        return self.along
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """An end of an edge: where the great circle of edge number `other` crosses it."""
+
+    other: int
+    above: Vector
+    below: Vector
+    sign: int
+
+    def reach(self, rays: Sequence[Vector]) -> Number:
+        """How far along the edge, in its own length: a quotient of linear functions of the receiver."""
+        ray = rays[self.other]
+        return dot(ray, self.above) / dot(ray, self.below)
+
+
+End = Fixed | Crossing
 
 
 @dataclass(frozen=True)
 class Contour:
-    """A loop in balls: where each edge starts and how it runs, and the corner before it, None where no point is known in
-    which its line and that of the edge before meet."""
+    """A loop in balls: where each edge starts, how it runs, and between which ends it is seen."""
 
     starts: tuple[Vector, ...]
     runs: tuple[Vector, ...]
-    corners: tuple[Corner, ...]
-    whole: tuple[bool, ...]  # whether all of an edge is seen
+    ends: tuple[tuple[End, End], ...]
 
     @classmethod
     def of(cls, edges: Loop, receiver: Point) -> Contour:
@@ -30,26 +56,34 @@ class Contour:
         return cls(
             tuple(_ball(start) for start, _ in edges),
             tuple(_ball(minus(end, start)) for start, end in edges),
-            tuple(_corner(before, here, receiver) for before, here in zip(befores, edges, strict=True)),
-            tuple(before[1] == here[0] and here[1] == after[0]
-                  for before, here, after in zip(befores, edges, afters, strict=True)),
+            tuple((_end(before, here, here, i - 1, receiver), _end(here, after, here, i + 1 - len(edges), receiver))
+                  for i, (before, here, after) in enumerate(zip(befores, edges, afters, strict=True))),
         )
 
     def outline(self, x: Vector) -> tuple[list[Vector], list[Vector]]:
         """Inward normals of the great circles on which the edges are seen, and the directions in which each edge begins."""
-        circles = [cross(minus(start, x), run) for start, run in zip(self.starts, self.runs, strict=True)]
-        return circles, [_direction(corner, circles[i - 1], circles[i], x) for i, corner in enumerate(self.corners)]
+        circles, spans = self._seen(x)
+        return circles, [times(start, ends[0].sign) for (start, _, _), ends in zip(spans, self.ends, strict=True)]
+
+    def _seen(self, x: Vector) -> tuple[list[Vector], list[tuple[Vector, Vector, Number]]]:
+        """The great circles, and of each edge the two ends as seen from x and how long it is, in its own length."""
+        rays = [minus(start, x) for start in self.starts]
+        circles = [cross(ray, run) for ray, run in zip(rays, self.runs, strict=True)]
+        spans = []
+        for ray, run, (first, last) in zip(rays, self.runs, self.ends, strict=True):
+            begin, end = first.reach(rays), last.reach(rays)
+            spans.append((plus(ray, times(run, begin)) if begin != 0 else ray, plus(ray, times(run, end)), end - begin))
+        return circles, spans
 
     def irradiance(self, x: Vector, normal: Vector) -> Ball:
         """Irradiance per radiance [sr] from a loop above the horizon of a receiver with unit `normal` (Lambert 1760; Arvo
         1995): half the sum over edges of angle times cosine. Angles are signed, so it stays analytic where an edge vanishes."""
-        circles, corners = self.outline(x)
-        lengths = [root(dot(corner, corner)) for corner in corners]
+        circles, spans = self._seen(x)
         total = arb(0)
-        for i, inwards in enumerate(circles):
-            a, b, length = corners[i], corners[i + 1 - len(corners)], root(dot(inwards, inwards))
-            sine = length if self.whole[i] else dot(cross(a, b), inwards) / length
-            total += angle(sine, dot(a, b), lengths[i] * lengths[i + 1 - len(lengths)]) * (dot(inwards, normal) / length)
+        for inwards, (start, end, span), (first, last) in zip(circles, spans, self.ends, strict=True):
+            sign, length = first.sign * last.sign, root(dot(inwards, inwards))
+            lengths = root(dot(start, start)) * root(dot(end, end))
+            total += angle(sign * span * length, sign * dot(start, end), lengths) * (dot(inwards, normal) / length)
         return total / 2
 
 
@@ -58,30 +92,34 @@ def total(contours: Sequence[Contour], x: Vector, normal: Vector) -> Ball:
     return sum((contour.irradiance(x, normal) for contour in contours), arb(0))
 
 
-def _ball(vector: Point) -> Vector:
-    return tuple(arb(component) for component in vector)
-
-
-def _corner(before: Edge, here: Edge, receiver: Point) -> Corner:
-    if before[1] == here[0]:
-        return _ball(here[0]), 1
-    meeting = meet(before, here)
-    if meeting is None:
-        return None
-    ways = [cross(minus(edge[0], receiver), minus(edge[1], edge[0])) for edge in (before, here)]
-    return _ball(meeting), 1 if dot(cross(*ways), minus(meeting, receiver)) > 0 else -1
-
-
 def meet(a: Edge, b: Edge) -> Point | None:
     """The point in which the lines of two edges meet; None where they are parallel or pass each other."""
+    along = _meeting(a, b)
+    return None if along is None else plus(a[0], times(minus(a[1], a[0]), along))
+
+
+def _meeting(a: Edge, b: Edge) -> Number | None:
+    """How far along the first of two edges, in its own length, their lines meet."""
     along, other, apart = minus(a[1], a[0]), minus(b[1], b[0]), minus(b[0], a[0])
     normal = cross(along, other)
     if not any(normal) or dot(apart, normal) != 0:
         return None
-    return plus(a[0], times(along, dot(cross(apart, other), normal) / dot(normal, normal)))
+    return dot(cross(apart, other), normal) / dot(normal, normal)
 
 
-def _direction(corner: Corner, before: Vector, here: Vector, x: Vector) -> Vector:
-    if corner is None:
-        return cross(before, here)
-    return minus(corner[0], x) if corner[1] > 0 else minus(x, corner[0])
+def _end(before: Edge, after: Edge, here: Edge, other: int, receiver: Point) -> End:
+    """The end of an edge, which is one of two neighbours, at the `other` of them."""
+    if before[1] == after[0]:
+        return Fixed(arb(0 if here is after else 1))
+    theirs = before if here is after else after
+    run, way, apart = minus(here[1], here[0]), minus(theirs[1], theirs[0]), minus(theirs[0], here[0])
+    above, below, ray = cross(way, apart), cross(way, run), minus(theirs[0], receiver)
+    along = _meeting(here, theirs)
+    reach = dot(ray, above) / dot(ray, below) if along is None else along
+    crossing = cross(circle(before, receiver), circle(after, receiver))
+    sign = 1 if dot(crossing, plus(minus(here[0], receiver), times(run, reach))) > 0 else -1
+    return Fixed(arb(along), sign) if along is not None else Crossing(other, _ball(above), _ball(below), sign)
+
+
+def _ball(vector: Point) -> Vector:
+    return tuple(arb(component) for component in vector)

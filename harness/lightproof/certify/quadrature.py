@@ -3,7 +3,7 @@
 Where f is analytic in the ellipse with foci -1, 1 and sum of semi-axes rho, and |f| <= M there, its Chebyshev
 coefficients are at most 2 M rho^-k (Trefethen 2019, theorem 8.1). An n-point rule is exact to degree 2n - 1, odd terms
 vanish, and even ones beyond err by at most 2 + 2/(k^2 - 1) <= 32/15, so |I - I_n| <= (64/15) M rho^-2n / (1 - rho^-2).
-One evaluation of f on a complex ball that holds the ellipse gives M.
+Evaluations of f on complex balls that cover the ellipse give M (`ellipses`).
 """
 
 from __future__ import annotations
@@ -11,19 +11,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
+from operator import itemgetter
 
-from flint import acb, arb, ctx, fmpq
+from flint import arb, ctx, fmpq
 
+from lightproof.certify import ellipses
 from lightproof.certify.balls import PRECISION, Ball, CannotCertify
 
 GOAL = 58  # bits below f in the square's centre
 DEPTH = 6  # halvings before giving up
 RADII = (24, 16, 11, 8, 6, 4.5, 3.5, 2.8, 2.2, 1.8, 1.5)  # tried for rho, the widest first
-MOST_NODES = 24
+MANY_NODES, MOST_NODES = 14, 24
+SPLITS = 4  # halvings of what a bound is taken over
 WHOLE = ((fmpq(0), fmpq(1)),)  # middle and half length
 HALVES = ((fmpq(-1, 2), fmpq(1, 2)), (fmpq(1, 2), fmpq(1, 2)))
 
 Integrand = Callable[[Ball, Ball], Ball]
+Rule = tuple[int, arb]  # nodes, proven error
 
 
 def mean(f: Integrand) -> arb:
@@ -34,10 +38,9 @@ def mean(f: Integrand) -> arb:
 def integral(f: Integrand, scale: arb | None = None, depth: int = DEPTH) -> arb:
     """Encloses the integral of f over the square, halved along each side where f is not analytic far enough around it. The
     error aimed at is `scale`, that of f in the middle unless given, over 2^GOAL."""
-    whole = acb(arb(0, 1))
     scale = f(arb(0), arb(0)).abs_upper() if scale is None else scale
-    across = _order(lambda ellipse: f(ellipse, whole), scale)
-    along = _order(lambda ellipse: f(whole, ellipse), scale)
+    across = _order(f, scale)
+    along = _order(lambda t, s: f(s, t), scale)
     if across and along:
         return _rule(f, across[0], along[0]) + 2 * arb(0, across[1]) + 2 * arb(0, along[1])
     if not depth:
@@ -51,19 +54,30 @@ def _part(f: Integrand, across: tuple[fmpq, fmpq], along: tuple[fmpq, fmpq]) -> 
     return lambda s, t: f(across[0] + across[1] * s, along[0] + along[1] * t)
 
 
-def _order(f: Callable[[acb], Ball], scale: arb) -> tuple[int, arb] | None:
-    """Number of nodes and proven error for f on [-1, 1], or None where too many nodes are needed."""
-    best = None
-    for rho in RADII:
-        bound = f(acb(arb(0, (rho + 1 / rho) / 2), arb(0, (rho - 1 / rho) / 2))).abs_upper()
-        if not bound.is_finite():
-            continue
-        nodes = max(1, math.ceil((GOAL + 3 + _bits(bound, scale)) / (2 * math.log2(rho))))
-        if best and nodes > best[0]:
-            break
-        if nodes <= MOST_NODES:
-            best = nodes, arb(64) / 15 * bound * arb(rho) ** (-2 * nodes) / (1 - arb(rho) ** -2)
-    return best
+def _order(f: Integrand, scale: arb) -> Rule | None:
+    """Number of nodes and proven error for f along its first variable, or None where too many nodes are needed. Bounds are
+    refined where a plain one asks for many."""
+    rule = _widest(f, scale, 0)
+    if not rule or rule[0] > MANY_NODES:
+        rule = min(filter(None, (rule, _widest(f, scale, SPLITS))), key=itemgetter(0), default=None)
+    return rule if rule and rule[0] <= MOST_NODES else None
+
+
+def _widest(f: Integrand, scale: arb, splits: int) -> Rule | None:
+    """The best rule met on the way to the widest ellipse around which f is analytic, by bisection: on a narrower one the bound
+    may be so much better that fewer nodes are enough."""
+    rules, low, high = [], 0, len(RADII)
+    while low < high:
+        middle = (low + high) // 2
+        bound = ellipses.bound(f, RADII[middle], splits)
+        low, high = (middle + 1, high) if bound is None else (low, middle)
+        rules += [] if bound is None else [_rule_for(RADII[middle], bound, scale)]
+    return min(rules, key=itemgetter(0), default=None)
+
+
+def _rule_for(rho: float, bound: arb, scale: arb) -> Rule:
+    nodes = max(2, math.ceil((GOAL + 3 + _bits(bound, scale)) / (2 * math.log2(rho))))
+    return nodes, arb(64) / 15 * bound * arb(rho) ** (-2 * nodes) / (1 - arb(rho) ** -2)
 
 
 def _bits(bound: arb, scale: arb) -> float:
