@@ -12,7 +12,7 @@ from flint import acb, arb
 
 from lightproof import geometry, scene
 from lightproof.certify import balls
-from lightproof.certify.balls import Ball, CannotCertify, Number, Vector, dot, exact, minus, point, root, unit
+from lightproof.certify.balls import Ball, CannotCertify, Number, Rational, Vector, dot, exact, minus, point, root, unit
 from lightproof.certify.planes import Plane
 
 Formula = Callable[[Vector], Ball]  # receiver -> irradiance [W/m2]
