@@ -1,8 +1,6 @@
 """Admit references: both engines, their agreement, the acceptance criteria, and the files.
 
-A suite's second engine is a script in references/, which shares no code with the first: <id>.py, or one that lists the scene
-in its constant SCENES. Its function `values(table, elements)` takes a scene as `Scene.to_table` gives it. The criteria are
-explained in references/README.md.
+The criteria are explained in references/README.md.
 """
 
 from __future__ import annotations
@@ -10,17 +8,15 @@ from __future__ import annotations
 import csv
 import json
 import math
-import runpy
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
 from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
 from lightproof import geometry
-from lightproof.certify import engine, provenance, register, sampling
+from lightproof.certify import engine, provenance, register, sampling, second_engine
 from lightproof.certify.balls import CannotCertify
 from lightproof.certify.engine import Certified, certify
 from lightproof.scene import PointsFilm, Scene, Surface
@@ -68,33 +64,15 @@ def admit(scene: Scene, folder: Path, progress: Callable[[], None] = lambda: Non
 
 def _admit(scene: Scene, folder: Path, progress: Callable[[], None]) -> Admitted:
     certified = certify(scene, progress=progress)
-    script = script_for(scene, folder)
+    script = second_engine.find(scene.id, folder)
     if script:
         elements = sampling.chosen(scene, certified.value, bool(_blockers(scene)))
-        difference = float(np.abs(second(script, scene, elements) - certified.value[elements]).max())
+        difference = float(np.abs(second_engine.values(script, scene, elements) - certified.value[elements]).max())
         admitted = Admitted(scene, certified, script.name, difference / _scale(certified.value), len(elements))
     else:
         admitted = Admitted(scene, certified, "none", math.nan, 0)
     _accept(admitted)
     return admitted
-
-
-def script_for(scene: Scene, folder: Path) -> Path | None:
-    """The second engine of a scene: the script of its name, or the one that lists it in SCENES; None without."""
-    own = folder / f"{scene.id}.py"
-    if own.is_file():
-        return own
-    return next((path for path in sorted(folder.glob("*.py")) if scene.id in _listed(path)), None)
-
-
-@cache
-def _listed(script: Path) -> tuple[str, ...]:
-    return tuple(runpy.run_path(str(script)).get("SCENES", ()))
-
-
-def second(script: Path, scene: Scene, elements: Iterable[int]) -> np.ndarray:
-    """Values of film elements by the second engine."""
-    return np.array(runpy.run_path(str(script))["values"](scene.to_table(), list(elements)))
 
 
 def limit(scene: Scene, value: np.ndarray) -> np.ndarray:
