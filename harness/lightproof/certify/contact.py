@@ -3,12 +3,13 @@ and polygons that overlap in one plane, of which either may be seen."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import count
 
 from flint import arb
 
 from lightproof import geometry
-from lightproof.certify.balls import Point, cross, dot, exact, minus, point, root
+from lightproof.certify.balls import Point, cross, dot, exact, minus, point, root, times
 from lightproof.certify.polygon import area_vector, clip, convex_parts
 
 Convex = tuple[Point, ...]
@@ -32,8 +33,8 @@ def touches(shape: geometry.Shape, x: Point, normal: Point) -> bool:
 
 def limit(parts: Iterable[Convex], x: Point, normal: Point) -> tuple[Convex, ...]:
     """Convex polygons as they are seen from x + e `normal` as e goes to 0: one that x lies on becomes the cone of directions in
-    which it then is, as triangles with a corner straight behind x."""
-    behind = minus(x, normal)
+    which it then is, as triangles with a corner straight behind x. These corners differ, so that none joins two triangles."""
+    behind = (minus(x, times(normal, depth)) for depth in count(1))
     return tuple(piece for part in parts for piece in (_cone(part, x, behind) if _leaves(part, x, normal) else (part,)))
 
 
@@ -63,8 +64,8 @@ def _leaves(convex: Convex, x: Point, normal: Point) -> bool:
     return all(dot(front, cross(minus(end, start), minus(x, start))) >= 0 for start, end in _edges(convex))
 
 
-def _cone(convex: Convex, x: Point, behind: Point) -> tuple[Convex, ...]:
-    return tuple((start, end, behind) for start, end in _edges(convex) if any(cross(minus(start, x), minus(end, x))))
+def _cone(convex: Convex, x: Point, behind: Iterator[Point]) -> tuple[Convex, ...]:
+    return tuple((start, end, next(behind)) for start, end in _edges(convex) if any(cross(minus(start, x), minus(end, x))))
 
 
 def _edges(convex: Convex) -> Iterable[tuple[Point, Point]]:
