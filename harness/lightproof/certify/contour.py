@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from flint import arb
+from flint import acb, arb, fmpq
 
 from lightproof.certify.balls import Ball, Number, Point, Vector, angle, cross, dot, minus, plus, root, times
 from lightproof.certify.polygon import Edge, Loop, circle
+
+
+HALF = fmpq(1, 2)
 
 
 @dataclass(frozen=True)
@@ -81,10 +84,20 @@ class Contour:
         circles, spans = self._seen(x)
         total = arb(0)
         for inwards, (start, end, span), (first, last) in zip(circles, spans, self.ends, strict=True):
-            sign, length = first.sign * last.sign, root(dot(inwards, inwards))
-            lengths = root(dot(start, start)) * root(dot(end, end))
-            total += angle(sign * span * length, sign * dot(start, end), lengths) * (dot(inwards, normal) / length)
+            sign, lengths = first.sign * last.sign, root(dot(start, start)) * root(dot(end, end))
+            total += _angle(sign * span, dot(inwards, inwards), sign * dot(start, end), lengths) * dot(inwards, normal)
         return total / 2
+
+
+def _angle(span: Ball, square: Ball, adjacent: Ball, hypotenuse: Ball) -> Ball:
+    """An angle by its legs span l and `adjacent`, over l, given l^2. Where an edge is seen end-on l vanishes, and the quotient
+    does not: it is atan(sqrt y)/sqrt y, a hypergeometric function of y, times half of it."""
+    length = root(square)
+    if length.is_finite() and not length.contains(0):
+        return angle(span * length, adjacent, hypotenuse) / length
+    half = span / (hypotenuse + adjacent)
+    value = 2 * half * acb(-half * half * square).hypgeom_2f1(HALF, 1, 3 * HALF)
+    return value if isinstance(square, acb) else value.real
 
 
 def total(contours: Sequence[Contour], x: Vector, normal: Vector) -> Ball:

@@ -6,21 +6,34 @@ Each light, with what may stand before it, is known by one module of FIELDS, whi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations
 from types import ModuleType
 
 from flint import arb
 
 from lightproof import geometry, scene
-from lightproof.certify import contact, curved, emitters, planes, provenance, quadrature, shadows, skies, unblocked
-from lightproof.certify.balls import Ball, CannotCertify, Element, Point, dot, exact, point
-from lightproof.certify.emitters import Formula
+from lightproof.certify import (
+    between,
+    contact,
+    curved,
+    emitters,
+    flux,
+    hard_shadows,
+    planes,
+    provenance,
+    shadows,
+    skies,
+    unblocked,
+)
+from lightproof.certify.balls import CannotCertify, Element, Point, dot, exact, plus, point, times
 from lightproof.certify.field import Field, Shape
-from lightproof.certify.planes import Frame, Patch, Plane, Region
+from lightproof.certify.planes import Frame, Plane, Region
 from lightproof.certify.provenance import Provenance
-from lightproof.scene import AreaLight, PlaneFilm, PointsFilm, Scene, Surface
+from lightproof.scene import AreaLight, Film, PlaneFilm, PointsFilm, Scene, Surface
 
-FIELDS: tuple[ModuleType, ...] = (curved, shadows, skies, unblocked)
+FIELDS: tuple[ModuleType, ...] = (curved, shadows, hard_shadows, skies, unblocked)
+A_LITTLE = exact(2.0**-100)
 ROUNDING = exact(1e-15)  # of a corner's coordinates: how far above a plane a corner counts as lying on it
 
 
@@ -36,18 +49,33 @@ def kind(scene_: Scene) -> str:
 
 def provenance_of(scene_: Scene) -> Provenance:
     """That of each light, joined."""
-    blockers = [surface.shape for surface in scene_.surfaces]
-    return provenance.joined(_module(light, blockers).provenance_of(light, blockers) for light in scene_.lights)
+    before = [(light, _blockers(scene_, light, _corners(scene_.film))) for light in scene_.lights]
+    return provenance.joined(_module(light, blockers).provenance_of(light, blockers) for light, blockers in before)
 
 
-def fields(scene_: Scene, receiver: Plane) -> list[Field]:
-    """One field a light for receivers on the front of a plane. Raises CannotCertify."""
+def fields(scene_: Scene, receiver: Plane, where: Sequence[Point] | None = None) -> list[Field]:
+    """One field a light for receivers on the front of a plane: anywhere on it, or between some points of it. Raises
+    CannotCertify."""
     for surface in scene_.surfaces:
         if surface.radiance > 0:
             raise CannotCertify(f"surface '{surface.id}' emits light of its own; give it as an area light")
-    lights = [light for light in scene_.lights if isinstance(light, AreaLight)]
-    shapes = {item.id: item.shape for item in (*lights, *scene_.surfaces) if not lies_on(item.shape, receiver)}
-    return [_field(light, [shape for name, shape in shapes.items() if name != light.id], receiver) for light in scene_.lights]
+    above = [(light, [shape for shape in _blockers(scene_, light, where) if not lies_on(shape, receiver)])
+             for light in scene_.lights]
+    return [_module(light, blockers).field(light, blockers, receiver) for light, blockers in above]
+
+
+def _blockers(scene_: Scene, light: scene.Light, where: Sequence[Point] | None) -> list[Shape]:
+    """What may stand between a light and receivers, which may be anywhere, or are between some points."""
+    others = [item for item in (*scene_.lights, *scene_.surfaces) if isinstance(item, AreaLight | Surface) and item is not light]
+    return [item.shape for item in others if where is None or between.may_hide(item.shape, light, where)]
+
+
+def _corners(film: Film) -> list[Point] | None:
+    """Points between which all receivers of a film are; None for a camera's."""
+    if isinstance(film, PlaneFilm):
+        frame = Frame.of(film)
+        return [frame.at(exact(p), exact(q)) for p in (0, 1) for q in (0, 1)]
+    return [point(position) for position in film.positions] if isinstance(film, PointsFilm) else None
 
 
 def lies_on(shape: Shape, plane: Plane) -> bool:
@@ -60,15 +88,11 @@ def lies_on(shape: Shape, plane: Plane) -> bool:
     return all((height := plane.height(corner)) <= 0 or height * height <= slack for corner in corners)
 
 
-def _field(light: scene.Light, blockers: list[Shape], receiver: Plane) -> Field:
-    return _module(light, blockers).field(light, blockers, receiver)
-
-
 def _module(light: scene.Light, blockers: list[Shape]) -> ModuleType:
     for module in FIELDS:
         if module.covers(light, blockers):
             return module
-    raise CannotCertify(f"something may stand before light '{light.id}'; shadows are covered for polygon lights only")
+    raise CannotCertify(f"something may stand before light '{light.id}'; that is not covered")
 
 
 def mean_over(frame: Frame, lights: list[Field], region: Region) -> arb:
@@ -88,15 +112,7 @@ def _flux(frame: Frame, lights: list[Field], region: Region) -> arb:
     formulas = [formula for light in lights if (formula := light.near(middle)) is not emitters.dark]
     if not formulas:
         return arb(0)
-    return sum((_over(frame, formulas, patch) for patch in planes.patches(region)), arb(0))
-
-
-def _over(frame: Frame, formulas: list[Formula], patch: Patch) -> arb:
-    def integrand(s: Ball, t: Ball) -> Ball:
-        x = frame.at(*patch.at(s, t))
-        return patch.jacobian(s, t) * sum((formula(x) for formula in formulas), arb(0))
-
-    return quadrature.integral(integrand)
+    return flux.through(frame, region, lambda x: sum((formula(x) for formula in formulas), arb(0)))
 
 
 def solve(scene_: Scene) -> Element:
@@ -108,7 +124,7 @@ def solve(scene_: Scene) -> Element:
     if isinstance(film, PointsFilm):
         return lambda element: at_point(scene_, film.positions[element], film.normals[element])
     frame = Frame.of(film)
-    lights = fields(scene_, frame.plane)
+    lights = fields(scene_, frame.plane, _corners(film))
     return lambda element: mean_over(frame, lights, frame.cell(element))
 
 
@@ -117,7 +133,8 @@ def at_point(scene_: Scene, position: geometry.Vec3, normal: geometry.Vec3) -> a
     x, n = point(position), point(normal)
     receiver = Plane(n, dot(n, x))
     _check_contact(scene_, x, receiver)
-    return sum((light.near(x)(x) for light in fields(scene_, receiver)), arb(0))
+    way = [x, plus(x, times(n, A_LITTLE))]  # what x lies on may hide something from where it comes
+    return sum((light.near(x)(x) for light in fields(scene_, receiver, way)), arb(0))
 
 
 def _check_overlaps(scene_: Scene) -> None:

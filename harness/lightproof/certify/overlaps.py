@@ -14,10 +14,10 @@ from itertools import combinations
 
 from flint import arb
 
-from lightproof.certify import conics, planes, quadrature, sightlines
-from lightproof.certify.balls import Ball, Point, Vector
+from lightproof.certify import conics, flux, planes, sightlines
+from lightproof.certify.balls import Point, Vector
 from lightproof.certify.contour import Contour
-from lightproof.certify.planes import Frame, Line, Patch, Plane, Region
+from lightproof.certify.planes import Frame, Line, Plane, Region
 from lightproof.certify.polygon import Loop, intersection, loop
 from lightproof.certify.sightlines import Convex, Sightline
 
@@ -68,7 +68,8 @@ class Overlaps:
             if len(parts) == 1 and intersection(shared, loop(self.blockers[blocker], x), x) == shared:
                 return arb(0)
             hidden += [(part, (*stack, blocker), later[i + 1:]) for part in parts]
-        whole = self._integral(Contour.of(shared, x), region, scale)
+        contour = Contour.of(shared, x)
+        whole = flux.through(self.frame, region, lambda y: contour.irradiance(y, self.normal), scale)
         return whole - sum((self._seen(*where, scale) for where in hidden), arb(0))
 
     def _inside(self, region: Region) -> Point:
@@ -79,15 +80,6 @@ class Overlaps:
         for i in stack:
             shared = intersection(shared, loop(self.blockers[i], x), x)
         return shared
-
-    def _integral(self, contour: Contour, region: Region, scale: arb) -> arb:
-        return sum((self._over(contour, patch, scale) for patch in planes.patches(region)), arb(0))
-
-    def _over(self, contour: Contour, patch: Patch, scale: arb) -> arb:
-        def integrand(s: Ball, t: Ball) -> Ball:
-            return patch.jacobian(s, t) * contour.irradiance(self.frame.at(*patch.at(s, t)), self.normal)
-
-        return quadrature.integral(integrand, scale / 4)
 
     def _cut(self, region: Region, stack: Stack) -> list[Region]:
         """The parts of a region in each of which what the light and a stack seem to share has one shape, given that for the

@@ -52,6 +52,16 @@ SPHERE = Provenance(
 )
 POINT = Provenance("E = I cos θ / r²", "The inverse square and cosine laws.", ("lambert1760",))
 BEAM = Provenance("E = E₀ cos θ", "The cosine law.", ("lambert1760",))
+POINT_SHADOW = Provenance(
+    "E = I cos θ / r² where nothing stands between, else 0",
+    "The inverse square and cosine laws; the shadow's edges are cut out exactly.",
+    ("lambert1760",),
+)
+BEAM_SHADOW = Provenance(
+    "E = E₀ cos θ where nothing stands between, else 0",
+    "The cosine law; the shadow's edges are cut out exactly.",
+    ("lambert1760",),
+)
 SKY = Provenance(
     "E = π L under a whole sphere of sky; E = π L (1 + cos b)/2 on a plane tilted by b under its upper half",
     "The integral of L cos θ over the visible sky; the tilted plane is in Howell's catalogue.",
