@@ -6,8 +6,9 @@ that are nearer; in coordinates from the receiver to the axis it is the same for
 
 from __future__ import annotations
 
+from flint import arb
+
 from lightproof import geometry
-from lightproof.certify import balls
 from lightproof.certify.balls import Ball, Number, Vector, arctan, cross, dot, exact, minus, plus, point, root, times, unit
 from lightproof.certify.emitters import Formula
 from lightproof.certify.planes import Plane
@@ -15,15 +16,15 @@ from lightproof.certify.planes import Plane
 
 def tube_light(shape: geometry.Cylinder, radiance: float, receiver: Plane) -> Formula:
     """Irradiance [W/m2] from the outside of a cylinder's wall, for receivers outside the infinite cylinder."""
-    base, radius, normal = point(shape.base), exact(shape.radius), unit(receiver.normal)
-    axis = times(point(shape.axis), 1 / balls.exact_root(dot(point(shape.axis), point(shape.axis))))
+    base, axis, normal = tuple(map(arb, point(shape.base))), unit(point(shape.axis)), unit(receiver.normal)
+    power, radius, height = arb(exact(radiance) / 2), arb(exact(shape.radius)), arb(exact(shape.height))
 
     def irradiance(x: Vector) -> Ball:
         low = dot(axis, minus(base, x))
         offset = minus(minus(base, x), times(axis, low))
-        ends = low, low + exact(shape.height)
+        ends = low, low + height
         rims = [_rim(offset, axis, radius, end, normal) for end in ends]
-        return exact(radiance) * (rims[1] - rims[0] + _lines(offset, axis, radius, ends, normal)) / 2
+        return power * (rims[1] - rims[0] + _lines(offset, axis, radius, ends, normal))
 
     return irradiance
 
@@ -37,14 +38,16 @@ def _lines(offset: Vector, axis: Vector, radius: Number, ends: tuple[Ball, Ball]
 
 
 def _rim(offset: Vector, axis: Vector, radius: Number, height: Ball, normal: Vector) -> Ball:
-    """The nearer half of a rim, counter-clockwise about the axis: on it |r|^2 = p - q cos f, f from -end to end."""
+    """The nearer half of a rim, counter-clockwise about the axis. On it |r|^2 = p - q cos f from f = -end to end, and with
+    d^2 = p^2 - q^2 and k = q / (p + d) it is (d - k ...) that do not cancel where the rim is small."""
     square = dot(offset, offset)
     distance = root(square)
-    end = arctan(root(square - radius * radius) / radius)
     p, q = square + height * height + radius * radius, 2 * radius * distance
     d = root((height * height + (distance - radius) ** 2) * (height * height + (distance + radius) ** 2))
-    whole = 4 / d * arctan((p + q) / d * (end / 2).tan())
-    cosines = (p * whole - 2 * end) / q
+    k, cosine = q / (p + d), radius / distance
+    sine = root(1 - cosine * cosine)
+    end, bend = arctan(sine / cosine), arctan(k * sine / (1 - k * cosine))
+    whole, cosines = 2 / d * (end + 2 * bend), 2 / d * (k * end + (1 + k * k) / k * bend)
     first = times(offset, -1 / distance)
     centre = plus(offset, times(axis, height))
     return radius * (radius * dot(normal, axis) * whole + dot(normal, cross(centre, cross(axis, first))) * cosines)
