@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from flint import acb, arb, fmpq
 
-from lightproof.certify.balls import Ball, Number, Point, Vector, angle, cross, dot, minus, plus, root, times
-from lightproof.certify.polygon import Edge, Loop, circle
-
+from lightproof.certify.balls import Ball, CannotCertify, Number, Point, Vector, angle, cross, dot, minus, plus, root, times
+from lightproof.certify.polygon import Edge, Loop, chords, circle
 
 HALF = fmpq(1, 2)
 
@@ -54,7 +53,7 @@ class Contour:
 
     @classmethod
     def of(cls, edges: Loop, receiver: Point) -> Contour:
-        """The contour of a loop as an exact receiver sees it, and others near it."""
+        """The contour of a loop as an exact receiver sees it, and others near it. Raises CannotCertify."""
         befores, afters = edges[-1:] + edges[:-1], edges[1:] + edges[:1]
         return cls(
             tuple(_ball(start) for start, _ in edges),
@@ -62,6 +61,11 @@ class Contour:
             tuple((_end(before, here, here, i - 1, receiver), _end(here, after, here, i + 1 - len(edges), receiver))
                   for i, (before, here, after) in enumerate(zip(befores, edges, afters, strict=True))),
         )
+
+    @classmethod
+    def at(cls, edges: Loop, receiver: Point) -> Contour:
+        """The contour of a loop for this receiver alone."""
+        return cls.of(chords(edges, receiver), receiver)
 
     def outline(self, x: Vector) -> tuple[list[Vector], list[Vector]]:
         """Inward normals of the great circles on which the edges are seen, and the directions in which each edge begins."""
@@ -128,6 +132,8 @@ def _end(before: Edge, after: Edge, here: Edge, other: int, receiver: Point) -> 
     run, way, apart = minus(here[1], here[0]), minus(theirs[1], theirs[0]), minus(theirs[0], here[0])
     above, below, ray = cross(way, apart), cross(way, run), minus(theirs[0], receiver)
     along = _meeting(here, theirs)
+    if along is None and dot(ray, below) == 0:
+        raise CannotCertify("an edge is seen to cross another one infinitely far off")
     reach = dot(ray, above) / dot(ray, below) if along is None else along
     crossing = cross(circle(before, receiver), circle(after, receiver))
     sign = 1 if dot(crossing, plus(minus(here[0], receiver), times(run, reach))) > 0 else -1

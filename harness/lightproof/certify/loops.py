@@ -63,7 +63,7 @@ def measure(region: Region, receiver: Point) -> Ball:
 
 def solid_angle(edges: Loop, receiver: Point) -> Ball:
     """Solid angle [sr] of a loop."""
-    return excess(*Contour.of(edges, receiver).outline(receiver))
+    return excess(*Contour.at(edges, receiver).outline(receiver))
 
 
 def excess(circles: Sequence[Vector], corners: Sequence[Vector]) -> Ball:

@@ -123,3 +123,9 @@ def corners_of(edges: Loop, receiver: Vector) -> list[Vector]:
         minus(after[0], receiver) if before[1] == after[0] else cross(circle(before, receiver), circle(after, receiver))
         for before, after in zip(edges[-1:] + edges[:-1], edges, strict=True)
     ]
+
+
+def chords(edges: Loop, receiver: Point) -> Loop:
+    """A loop that this receiver, and no other, sees as it sees `edges`: each edge ends where the next begins."""
+    corners = [plus(receiver, corner) for corner in corners_of(edges, receiver)]
+    return tuple(zip(corners, corners[1:] + corners[:1], strict=True))

@@ -42,7 +42,7 @@ def field(light: AreaLight, blockers: list[Shape], receiver: Plane) -> Field:
     def near(x: Point) -> Formula:
         lamp, shades = (contact.limit(tiles, x, receiver.normal) for tiles in (parts, between))
         pieces = _seen(_clipped(lamp, receiver), shades, x) if _faces(face, x, receiver) else []
-        contours = [Contour.of(piece, x) for piece in pieces]
+        contours = [Contour.at(piece, x) for piece in pieces]
         return lambda y: radiance * contour.total(contours, y, normal)
 
     @cache
