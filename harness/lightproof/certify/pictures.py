@@ -7,6 +7,7 @@ shows, and over the part of a surface that reflects `direct` integrates irradian
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from itertools import combinations
 
@@ -28,14 +29,19 @@ def covers(scene_: Scene) -> bool:
 
 
 def kind(scene_: Scene) -> str:
-    """Exact areas, and means of closed forms by rules whose error is proven."""
-    return "enclosure"
+    """Areas are exact; irradiance is as `direct` knows it."""
+    return direct.kind(scene_)
 
 
 def provenance_of(scene_: Scene) -> Provenance:
-    """That of seeing, and of the light on what reflects."""
-    lit = [direct.provenance_of(scene_)] if scene_.reflects else []
-    return provenance.joined([*lit, provenance.SEEN])
+    """That of the light on each surface that reflects, and of seeing it."""
+    lit = [_before(surface, scene_) for surface in scene_.surfaces if surface.reflectance > 0 and scene_.reflects]
+    return provenance.joined([*map(direct.provenance_of, lit), provenance.SEEN])
+
+
+def _before(surface: Surface, scene_: Scene) -> Scene:
+    """The scene with the surfaces alone that have a part in front of a surface."""
+    return replace(scene_, surfaces=tuple(other for other in scene_.surfaces if not _behind(surface, other)))
 
 
 def solve(scene_: Scene) -> Element:

@@ -7,18 +7,25 @@ from collections.abc import Sequence
 from lightproof import geometry
 from lightproof.certify import planes
 from lightproof.certify.balls import CannotCertify, Point, Rational, cross, dot, exact, minus, plus, point, times
+from lightproof.certify.polygon import area_vector
 from lightproof.scene import Surface
 
 Corners = tuple[Point, ...]
 
 
 def is_closed(surfaces: Sequence[Surface]) -> bool:
-    """Whether there are polygons only, and each of their edges is run through once either way."""
+    """Whether there are polygons only, each of their edges is run through once either way, and their fronts face in."""
     shapes = [surface.shape for surface in surfaces]
     if not shapes or not all(isinstance(shape, geometry.Polygon) for shape in shapes):
         return False
     edges = [edge for shape in shapes for edge in zip(shape.vertices, (*shape.vertices[1:], shape.vertices[0]), strict=True)]
-    return sorted(edges) == sorted((end, start) for start, end in edges)
+    return sorted(edges) == sorted((end, start) for start, end in edges) and sum(map(_volume, shapes)) < 0
+
+
+def _volume(shape: geometry.Polygon) -> Rational:
+    """Six times the volume of the cone from the origin to a polygon, negative where it faces the origin."""
+    corners = [point(vertex) for vertex in shape.vertices]
+    return dot(corners[0], area_vector(corners))
 
 
 def walls(surfaces: Sequence[Surface]) -> list[Corners]:
