@@ -45,7 +45,8 @@ class Cap:
 def sun(light: SunDisc) -> Cap:
     """The directions in which a sun is seen."""
     turn = balls.exact(light.half_angle) / 180
-    return Cap(times(balls.point(light.direction), -1), (arb.pi() * turn).cos() ** 2)
+    cosine_squared = fmpq(0) if light.half_angle == 90 else (arb.pi() * turn).cos() ** 2
+    return Cap(times(balls.point(light.direction), -1), cosine_squared)
 
 
 def ball(shape: geometry.Sphere, receiver: Point) -> Cap:
@@ -148,8 +149,9 @@ def _crossings(cap: Cap, normal: Point) -> tuple[Vector, Vector]:
 
 
 def _great(normal: Point, start: Vector, end: Vector) -> Arc:
+    """The arc of a great circle, half a turn at most."""
     axis = unit(normal)
-    return Arc(axis, 0, start, end, arb.atan2(dot(axis, cross(start, end)), dot(start, end)))
+    return Arc(axis, 0, start, end, arb.pi() / 2 - arb.atan2(dot(start, end), dot(axis, cross(start, end))))
 
 
 def _rim(cap: Cap, start: Vector, end: Vector) -> Arc:

@@ -12,7 +12,6 @@ from flint import acb, arb
 
 from lightproof import geometry
 from lightproof.certify.balls import Number, Point, Undecided, Vector, cross, dot, exact, minus, plus, point, root, times, unit
-from lightproof.certify.rounded import triangle
 
 
 def solid_angle(shape: geometry.Disk, receiver: Point, normal: Point | None) -> arb:
@@ -61,7 +60,7 @@ class _Rim:
         """The part of the disk on one side of the chord between the angles `middle` - `half` and `middle` + `half`."""
         start, end = middle - half, middle + half
         foot = minus(self.centre, times(self.away, self.offset))
-        return self.turned(start, end) + triangle(foot, self.at(start), self.at(end))
+        return self.turned(start, end) + _triangle(foot, self.at(start), self.at(end))
 
     def at(self, t: arb) -> Vector:
         """The point of the rim at an angle."""
@@ -75,6 +74,14 @@ def _rim(shape: geometry.Disk, receiver: Point) -> _Rim:
     away = unit(offset if any(offset) else _perpendicular(axis))
     height = -dot(axis, centre) / root(dot(axis, axis))
     return _Rim(centre, exact(shape.radius), height, root(dot(offset, offset)), away, cross(unit(axis), away))
+
+
+def _triangle(a: Vector, b: Vector, c: Vector) -> arb:
+    """Signed solid angle [sr] of the triangle in which three directions, of any length, are seen (Van Oosterom and Strackee
+    1983): positive where a, b, c run counter-clockwise."""
+    la, lb, lc = (root(dot(side, side)) for side in (a, b, c))
+    volume = dot(a, cross(minus(b, a), minus(c, a)))
+    return 2 * arb.atan2(volume, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
 
 
 def _perpendicular(axis: Point) -> Point:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from flint import arb
 
-from lightproof.certify.balls import Number, Vector, angle, cross, dot, minus, root
+from lightproof.certify.balls import Number, Vector, cross, dot, minus
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,9 @@ class Arc:
         chord = dot(cross(self.axis, minus(self.end, self.start)), normal)
         return ((1 - self.cosine**2) * self.turn * dot(self.axis, normal) + self.cosine * chord) / 2
 
-    def beyond_chord(self) -> arb:
-        """Solid angle [sr] between the arc and the great circle through its ends: a sector of the cap less a triangle."""
-        if self.cosine == 0:
-            return arb(0)
-        return (1 - self.cosine) * self.turn - triangle(self.axis, self.start, self.end)
+    def heading(self, place: Vector) -> Vector:
+        """The direction in which the arc runs through a place, of any length."""
+        return cross(self.axis, place)
 
 
 Contour = tuple[Arc, ...]  # round a convex region, which it keeps on its left; () where there is nothing
@@ -41,17 +39,14 @@ def projected(contour: Contour, normal: Vector) -> arb:
 
 
 def solid_angle(contour: Contour) -> arb:
-    """Solid angle [sr] of a region."""
+    """Solid angle [sr] of a region: a whole turn, less the turns along its arcs and in its corners (Gauss and Bonnet)."""
     if not contour:
         return arb(0)
-    fan = sum((triangle(contour[0].start, arc.start, arc.end) for arc in contour[1:-1]), arb(0))
-    return fan + sum((arc.beyond_chord() for arc in contour), arb(0))
+    arcs = sum((arc.cosine * arc.turn for arc in contour), arb(0))
+    return 2 * arb.pi() - arcs - sum((_corner(contour[i - 1], arc) for i, arc in enumerate(contour)), arb(0))
 
 
-def triangle(a: Vector, b: Vector, c: Vector) -> arb:
-    """Signed solid angle [sr] of the triangle in which three directions, of any length, are seen (Van Oosterom and Strackee
-    1983): positive where a, b, c run counter-clockwise."""
-    la, lb, lc = (root(dot(side, side)) for side in (a, b, c))
-    ab, bc, ca = la * lb + dot(a, b), lb * lc + dot(b, c), lc * la + dot(c, a)
-    volume = dot(a, cross(minus(b, a), minus(c, a)))
-    return 2 * angle(volume, ab * lc + lb * dot(c, a) + la * dot(b, c), root(2 * ab * bc * ca))
+def _corner(before: Arc, after: Arc) -> arb:
+    """The turn to the left, of 0 to pi, from one arc to the next."""
+    here, there = before.heading(after.start), after.heading(after.start)
+    return arb.pi() / 2 - arb.atan2(dot(here, there), dot(cross(here, there), after.start))

@@ -19,16 +19,14 @@ from lightproof.certify.surroundings import Surroundings, face
 from lightproof.scene import AreaLight, Environment, OvercastSky, PointsFilm, Scene, SunDisc, Surface
 
 UP = (fmpq(0), fmpq(0), fmpq(1))
-POLYGON = Provenance(
-    "ω = Σ 2 atan2(a · (b × c), abc + (a · b) c + (b · c) a + (c · a) b) over triangles that make up what is seen",
-    "Van Oosterom and Strackee's triangle, on the visible part of the polygons.",
-    ("vanoosterom1983",),
-)
-CAP = Provenance("ω = 2 π (1 − cos a), sin a = R/d for a sphere", "The area of a cap on the unit sphere, cut along circles.",
-                 ("vanoosterom1983",))
+POLYGON = Provenance("ω = 2 π − Σ τᵢ, the turns τᵢ in the corners of what is seen, each loop for itself",
+                     "Girard's spherical excess, on the visible part of the polygons.", ("todhunter1886", "arvo1994"))
+CAP = Provenance("ω = 2 π (1 − cos a), sin a = R/d for a sphere; where it is cut ω = 2 π − Σ τᵢ − Σ φⱼ cos a, φⱼ arcs of the rim",
+                 "The area of a spherical cap, and the Gauss-Bonnet theorem for parts of it.", ("todhunter1886",))
 DISK = Provenance("ω = ∮ (1 − h/r) dφ along the rim, φ the azimuth about the foot of the perpendicular, of length h",
                   "Paxton's integral, evaluated with proven bounds.", ("paxton1959", "johansson2018"))
-SKY = Provenance("ω = 4 π, 2 π above a horizon, less what hides the sky", "The area of the unit sphere.", ("vanoosterom1983",))
+SKY = Provenance("ω = 4 π, 2 π above a horizon, less what hides the sky", "The area of a sphere and of a lune.",
+                 ("todhunter1886",))
 SOURCES = {geometry.Polygon: POLYGON, geometry.Sphere: CAP, geometry.Disk: DISK, scene.SunDisc: CAP, scene.Environment: SKY,
            scene.OvercastSky: SKY}
 
