@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
     if not names:
         raise UsageError("there is nothing to certify; name a scene, the path of a scene file, or --all")
     chosen = [_cases(name, home) for name in names]
-    console = Console(highlight=False, soft_wrap=True)
+    console = Console(emoji=False, highlight=False, soft_wrap=True)
     return _check(chosen, options.seed, console) if options.check else _certify(chosen, console)
 
 

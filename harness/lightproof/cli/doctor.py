@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """One line for each method; 3 where one that is installed does not render."""
-    console, home = Console(highlight=False, soft_wrap=True), suite.default()
+    console, home = Console(emoji=False, highlight=False, soft_wrap=True), suite.default()
     scenes = [home.scene(name) for name in TRIAL_SCENES]
     broken = False
     for entry in selection.methods(options.methods, tags=[selection.NIGHTLY]):

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print what is worse, and write the new state beside the old one for review."""
-    console = Console(highlight=False, soft_wrap=True)
+    console = Console(emoji=False, highlight=False, soft_wrap=True)
     accepted = {} if options.record and not options.baseline.exists() else baseline.read(options.baseline)
     store.check_writable(options.out)
     home = Suite(options.suite) if options.suite else suite.default()

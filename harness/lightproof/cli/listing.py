@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the scenes group by group, then the methods."""
     check_tags(options.tags)
-    console = Console()
+    console = Console(emoji=False)
     scenes = _chosen(Suite(options.suite) if options.suite else suite.default(), options.tags)
     for group, members in groupby(sorted(scenes, key=_rank), key=_group):
         console.print(_scenes(group, list(members)))

@@ -74,7 +74,7 @@ seconds.__name__ = "number of seconds"
 
 def run(options: argparse.Namespace) -> int:
     """Make or resume a run, and sum it up."""
-    console = Console(highlight=False, soft_wrap=True)
+    console = Console(emoji=False, highlight=False, soft_wrap=True)
     if options.resume:
         return _resume(options, console)
     home = Suite(options.suite) if options.suite else suite.default()
