@@ -23,6 +23,7 @@ from lightproof.certify import (
     direct,
     enclosure,
     one_reflection,
+    perpendicular,
     pictures,
     solid_angle,
     sphere_interior,
@@ -33,7 +34,7 @@ from lightproof.scene import PointsFilm, Scene
 MOST_PRECISION = 4096  # bits
 NARROW = 60  # bits of a value at a point that a ball has to give
 SOLVERS: tuple[ModuleType, ...] = (sphere_interior, concentric, enclosure, ball_seen, pictures, coaxial_disks, one_reflection,
-                                    solid_angle, direct)
+                                    perpendicular, solid_angle, direct)
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from types import ModuleType
 
 from flint import arb
 
 from lightproof import geometry
-from lightproof.certify import direct, emitters, planes, provenance
+from lightproof.certify import direct, emitters, perpendicular, planes, provenance
 from lightproof.certify.balls import CannotCertify, Element, Point, cross, dot, exact, point
 from lightproof.certify.provenance import Provenance
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, PlaneFilm, Scene, Surface
@@ -27,14 +28,14 @@ def covers(scene: Scene) -> bool:
 
 
 def kind(scene: Scene) -> str:
-    """That of the light that the lit surfaces give."""
-    return direct.kind(_under(scene, next(surface for surface in scene.surfaces if surface.reflectance > 0)))
+    """An enclosure where the light that each reflecting surface gives is one."""
+    kinds = {_module(lamp).kind(lamp) for lamp in _lamps(scene)}
+    return "enclosure" if kinds == {"enclosure"} else "quadrature"
 
 
 def provenance_of(scene: Scene) -> Provenance:
     """That of polygon lights, their radiance explained."""
-    lamps = [_under(scene, surface) for surface in scene.surfaces if surface.reflectance > 0]
-    return provenance.joined([FORMULA, *(direct.provenance_of(lamp) for lamp in lamps)])
+    return provenance.joined([FORMULA, *(_module(lamp).provenance_of(lamp) for lamp in _lamps(scene))])
 
 
 def solve(scene: Scene) -> Element:
@@ -42,7 +43,8 @@ def solve(scene: Scene) -> Element:
     reflecting = [surface for surface in scene.surfaces if surface.reflectance > 0]
     _check(scene, reflecting)
     exitance = [(exact(surface.reflectance) * _irradiance(scene, surface), surface) for surface in reflecting]
-    lamps = [(value / arb.pi(), direct.solve(_under(scene, surface))) for value, surface in exitance if not value.is_zero()]
+    lit = [(value / arb.pi(), _under(scene, surface)) for value, surface in exitance if not value.is_zero()]
+    lamps = [(radiance, _module(lamp).solve(lamp)) for radiance, lamp in lit]
     straight = [direct.solve(replace(scene, lights=(beam,), max_bounces=0)) for beam in scene.lights if _reaches(beam, scene)]
     return lambda element: (sum((radiance * lamp(element) for radiance, lamp in lamps), arb(0))
                             + sum((beam(element) for beam in straight), arb(0)))
@@ -85,11 +87,13 @@ def _irradiance(scene: Scene, surface: Surface) -> arb:
 
 
 def _passes(direction: Point, corners: Sequence[Point], shape: geometry.Shape) -> bool:
-    """Whether a shape keeps clear of the light on its way to a polygon: a plane along the beam, or the polygon's own, parts
-    them, or they are seen to touch at most."""
+    """Whether a shape keeps clear of the light on its way to a polygon: the beam runs along it, or it is behind the polygon, or
+    a plane along the beam parts them."""
     if not isinstance(shape, geometry.Polygon):
         return False
     others = _corners(shape)
+    if dot(planes.of(others).normal, direction) == 0:
+        return True
     if max(planes.of(corners).height(corner) for corner in others) <= 0:
         return True
     edges = [(loop[i - 1], loop[i]) for loop in (corners, others) for i in range(len(loop))]
@@ -102,11 +106,21 @@ def _parts(axis: Point, low: Sequence[Point], high: Sequence[Point]) -> bool:
     return max(dot(axis, corner) for corner in low) <= min(dot(axis, corner) for corner in high)
 
 
+def _lamps(scene: Scene) -> list[Scene]:
+    """The scene lit by each of its reflecting surfaces in turn."""
+    return [_under(scene, surface) for surface in scene.surfaces if surface.reflectance > 0]
+
+
 def _under(scene: Scene, surface: Surface) -> Scene:
     """The scene lit by one of its surfaces alone, of radiance 1, where nothing reflects."""
     lamp = AreaLight(surface.id, surface.shape, 1.0)
     rest = tuple(replace(other, reflectance=0.0) for other in scene.surfaces if other is not surface)
     return replace(scene, lights=(lamp,), surfaces=rest, max_bounces=0)
+
+
+def _module(scene: Scene) -> ModuleType:
+    """What knows the light of a lit surface."""
+    return perpendicular if perpendicular.covers(scene) else direct
 
 
 def _reaches(beam: DirectionalLight, scene: Scene) -> bool:
