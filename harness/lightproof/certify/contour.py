@@ -4,62 +4,52 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 
 from flint import acb, arb, fmpq
 
 from lightproof.certify.balls import Ball, CannotCertify, Number, Point, Vector, angle, cross, dot, minus, plus, root, times
-from lightproof.certify.polygon import Edge, Loop, chords, circle
+from lightproof.certify.polygon import Edge, Loop, chords
 
 HALF = fmpq(1, 2)
 
 
 @dataclass(frozen=True)
-class Fixed:
-    """An end of an edge: a corner, or a point in which two lines meet, `along` of its length after its start."""
+class Corner:
+    """Where an edge and the one before it meet as they are seen: a point of edge number `edge`, at its start + `along` run, or,
+    where `along` is None, where the great circle of edge `other` crosses it. `before` is how far along the edge before it
+    is, where that is known."""
 
-    along: arb
-    sign: int = 1  # -1 where the opposite direction is meant, as may be on an edge that is continued
-
-    def reach(self, rays: Sequence[Vector]) -> Number:
-        """How far along the edge, in its own length."""
-        return self.along
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """An end of an edge: where the great circle of edge number `other` crosses it."""
-
+    edge: int
     other: int
+    along: arb | None
+    before: arb | None
     above: Vector
     below: Vector
-    sign: int
 
     def reach(self, rays: Sequence[Vector]) -> Number:
-        """How far along the edge, in its own length: a quotient of linear functions of the receiver."""
+        """How far along its edge, in the edge's own length: a quotient of linear functions of the receiver."""
+        if self.along is not None:
+            return self.along
         ray = rays[self.other]
         return dot(ray, self.above) / dot(ray, self.below)
 
 
-End = Fixed | Crossing
-
-
 @dataclass(frozen=True)
 class Contour:
-    """A loop in balls: where each edge starts, how it runs, and between which ends it is seen."""
+    """A loop in balls: where each edge starts, how it runs, and the corner before it."""
 
     starts: tuple[Vector, ...]
     runs: tuple[Vector, ...]
-    ends: tuple[tuple[End, End], ...]
+    corners: tuple[Corner, ...]
 
     @classmethod
     def of(cls, edges: Loop, receiver: Point) -> Contour:
         """The contour of a loop as an exact receiver sees it, and others near it. Raises CannotCertify."""
-        befores, afters = edges[-1:] + edges[:-1], edges[1:] + edges[:1]
         return cls(
             tuple(_ball(start) for start, _ in edges),
             tuple(_ball(minus(end, start)) for start, end in edges),
-            tuple((_end(before, here, here, i - 1, receiver), _end(here, after, here, i + 1 - len(edges), receiver))
-                  for i, (before, here, after) in enumerate(zip(befores, edges, afters, strict=True))),
+            tuple(_corner(edges, i, receiver) for i in range(len(edges))),
         )
 
     @classmethod
@@ -69,28 +59,39 @@ class Contour:
 
     def outline(self, x: Vector) -> tuple[list[Vector], list[Vector]]:
         """Inward normals of the great circles on which the edges are seen, and the directions in which each edge begins."""
-        circles, spans = self._seen(x)
-        return circles, [times(start, ends[0].sign) for (start, _, _), ends in zip(spans, self.ends, strict=True)]
-
-    def _seen(self, x: Vector) -> tuple[list[Vector], list[tuple[Vector, Vector, Number]]]:
-        """The great circles, and of each edge the two ends as seen from x and how long it is, in its own length."""
         rays = [minus(start, x) for start in self.starts]
         circles = [cross(ray, run) for ray, run in zip(rays, self.runs, strict=True)]
-        spans = []
-        for ray, run, (first, last) in zip(rays, self.runs, self.ends, strict=True):
-            begin, end = first.reach(rays), last.reach(rays)
-            spans.append((plus(ray, times(run, begin)) if begin != 0 else ray, plus(ray, times(run, end)), end - begin))
-        return circles, spans
+        return circles, self._directions(rays, [corner.reach(rays) for corner in self.corners])
+
+    def _directions(self, rays: Sequence[Vector], reaches: Sequence[Number]) -> list[Vector]:
+        return [plus(rays[corner.edge], times(self.runs[corner.edge], reach))
+                for corner, reach in zip(self.corners, reaches, strict=True)]
 
     def irradiance(self, x: Vector, normal: Vector) -> Ball:
         """Irradiance per radiance [sr] from a loop above the horizon of a receiver with unit `normal` (Lambert 1760; Arvo
         1995): half the sum over edges of angle times cosine. Angles are signed, so it stays analytic where an edge vanishes."""
-        circles, spans = self._seen(x)
+        rays = [minus(start, x) for start in self.starts]
+        reaches = [corner.reach(rays) for corner in self.corners]
+        corners = self._directions(rays, reaches)
+        lengths = [root(dot(corner, corner)) for corner in corners]
         total = arb(0)
-        for inwards, (start, end, span), (first, last) in zip(circles, spans, self.ends, strict=True):
-            sign, lengths = first.sign * last.sign, root(dot(start, start)) * root(dot(end, end))
-            total += _angle(sign * span, dot(inwards, inwards), sign * dot(start, end), lengths) * dot(inwards, normal)
+        for i, (ray, run) in enumerate(zip(rays, self.runs, strict=True)):
+            j = i + 1 - len(rays)
+            inwards = cross(ray, run)
+            span = self._span(i, reaches)
+            square = dot(inwards, inwards)
+            if span is None:
+                span = dot(cross(corners[i], corners[j]), inwards) / square
+            total += _angle(span, square, dot(corners[i], corners[j]), lengths[i] * lengths[j]) * dot(inwards, normal)
         return total / 2
+
+    def _span(self, i: int, reaches: Sequence[Number]) -> Number | None:
+        """How much of an edge is seen, in its own length; None where one of its ends is measured on a neighbour only."""
+        first, last = self.corners[i], self.corners[i + 1 - len(reaches)]
+        end = reaches[i + 1 - len(reaches)] if last.edge == i else last.before
+        if first.edge != i or end is None:
+            return None
+        return end - reaches[i]
 
 
 def _angle(span: Ball, square: Ball, adjacent: Ball, hypotenuse: Ball) -> Ball:
@@ -124,20 +125,29 @@ def _meeting(a: Edge, b: Edge) -> Number | None:
     return dot(cross(apart, other), normal) / dot(normal, normal)
 
 
-def _end(before: Edge, after: Edge, here: Edge, other: int, receiver: Point) -> End:
-    """The end of an edge, which is one of two neighbours, at the `other` of them."""
-    if before[1] == after[0]:
-        return Fixed(arb(0 if here is after else 1))
-    theirs = before if here is after else after
-    run, way, apart = minus(here[1], here[0]), minus(theirs[1], theirs[0]), minus(theirs[0], here[0])
-    above, below, ray = cross(way, apart), cross(way, run), minus(theirs[0], receiver)
-    along = _meeting(here, theirs)
-    if along is None and dot(ray, below) == 0:
+def _corner(edges: Loop, i: int, receiver: Point) -> Corner:
+    """The corner between an edge and the one before it, as a point of that of the two which is farther away there: it moves
+    less as the receiver does."""
+    before, here = edges[i - 1], edges[i]
+    if before[1] == here[0]:
+        return Corner(i, i - 1, arb(0), arb(1), (), ())
+    along = _meeting(here, before)
+    if along is not None:
+        return Corner(i, i - 1, arb(along), arb(_meeting(before, here)), (), ())
+    crossings = (_crossing(edges, *pair, receiver) for pair in ((i, i - 1), (i - 1, i)))
+    edge, other, above, below, _ = max(crossings, key=itemgetter(4))
+    return Corner(edge % len(edges), other, None, None, _ball(above), _ball(below))
+
+
+def _crossing(edges: Loop, i: int, other: int, receiver: Point) -> tuple[int, int, Vector, Vector, Number]:
+    """Where the great circle of another edge crosses an edge, and the square of how far from the receiver that is."""
+    (start, end), (first, last) = edges[i], edges[other]
+    run, way, ray = minus(end, start), minus(last, first), minus(first, receiver)
+    above, below = cross(way, minus(first, start)), cross(way, run)
+    if dot(ray, below) == 0:
         raise CannotCertify("an edge is seen to cross another one infinitely far off")
-    reach = dot(ray, above) / dot(ray, below) if along is None else along
-    crossing = cross(circle(before, receiver), circle(after, receiver))
-    sign = 1 if dot(crossing, plus(minus(here[0], receiver), times(run, reach))) > 0 else -1
-    return Fixed(arb(along), sign) if along is not None else Crossing(other, _ball(above), _ball(below), sign)
+    seen = plus(minus(start, receiver), times(run, dot(ray, above) / dot(ray, below)))
+    return i, other, above, below, dot(seen, seen)
 
 
 def _ball(vector: Point) -> Vector:

@@ -18,7 +18,7 @@ from lightproof.certify import conics, flux, planes, sightlines
 from lightproof.certify.balls import Point, Vector
 from lightproof.certify.contour import Contour
 from lightproof.certify.planes import Frame, Line, Plane, Region
-from lightproof.certify.polygon import Loop, intersection, loop
+from lightproof.certify.polygon import Loop, intersection, loop, visible_pieces
 from lightproof.certify.sightlines import Convex, Sightline
 
 Cuts = list[tuple[Line, Sightline]]
@@ -49,7 +49,16 @@ class Overlaps:
         near = tuple(i for i in range(len(self.blockers)) if self._may_hide(i, region))
         x = self._inside(region)
         scale = Contour.of(loop(self.light, x), x).irradiance(x, self.normal) * planes.area(region)
-        return self._seen(region, (), near, scale)
+        total = self._seen(region, (), near, scale)
+        return arb(0) if total.contains(0) and self._is_dark(region, near) else total
+
+    def _is_dark(self, region: Region, near: Stack) -> bool:
+        """Whether nothing of the light is seen from anywhere in a region: exactly none."""
+        parts = [region]
+        for stack in (stack for count in (1, 2, 3) for stack in combinations(near, count)):
+            parts = [part for whole in parts for part in self._cut(whole, stack)]
+        places = [self._inside(part) for part in parts]
+        return not any(visible_pieces(loop(self.light, x), [loop(self.blockers[i], x) for i in near], x) for x in places)
 
     def _may_hide(self, i: int, region: Region) -> bool:
         """False where a plane between light and blocker has the region on the light's side."""

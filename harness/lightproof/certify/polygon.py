@@ -8,7 +8,7 @@ arithmetic; how much light, follows by Lambert's formula (`contour`) for any rec
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import reduce
 from itertools import pairwise
 
@@ -87,6 +87,14 @@ def difference(a: Loop, b: Loop, receiver: Point) -> list[Loop]:
         rest.append(_half(a, (end, start), receiver))
         a = _half(a, (start, end), receiver)
     return [part for part in rest if part]
+
+
+def visible_pieces(light: Loop, shades: Iterable[Loop], receiver: Point) -> list[Loop]:
+    """Convex loops that tile what of one convex loop is outside others."""
+    pieces = [light] if light else []
+    for shade in shades:
+        pieces = [rest for piece in pieces for rest in difference(piece, shade, receiver)]
+    return pieces
 
 
 def intersection(a: Loop, b: Loop, receiver: Point) -> Loop:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import cache
 
 from flint import arb
@@ -15,7 +15,7 @@ from lightproof.certify.emitters import Formula
 from lightproof.certify.field import Field, Shape
 from lightproof.certify.overlaps import Overlaps
 from lightproof.certify.planes import Frame, Plane, Region
-from lightproof.certify.polygon import clip, convex_parts, difference, loop
+from lightproof.certify.polygon import Loop, clip, convex_parts, loop, visible_pieces
 from lightproof.certify.provenance import Provenance
 from lightproof.certify.sightlines import Convex
 from lightproof.scene import AreaLight
@@ -80,10 +80,7 @@ def _polygon(shape: Shape) -> Convex:
     return tuple(point(corner) for corner in shape.vertices)
 
 
-def _seen(light: Sequence[Convex], blockers: Sequence[Convex], x: Point) -> list:
+def _seen(light: Iterable[Convex], blockers: Iterable[Convex], x: Point) -> list[Loop]:
     """Convex loops that tile what a receiver sees of a light past blockers."""
-    pieces = [loop(part, x) for part in light]
-    for blocker in blockers:
-        shade = loop(blocker, x)
-        pieces = [rest for piece in pieces for rest in difference(piece, shade, x)]
-    return [piece for piece in pieces if piece]
+    shades = [loop(blocker, x) for blocker in blockers]
+    return [piece for part in light for piece in visible_pieces(loop(part, x), shades, x)]
