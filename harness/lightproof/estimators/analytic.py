@@ -1,101 +1,55 @@
 """Closed forms at points, Gauss quadrature over elements: no noise. Lambert's formula for polygons clipped at the horizon
-and cut by polygons in between (Arvo 1994, 1995); disks, spheres and skies; spheres full of reflected light."""
+and cut by polygons in between (Arvo 1994, 1995); disks, spheres and skies; hard shadows; spheres full of reflected light."""
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from lightproof.estimators import closed_forms, enclosure, polygons, quadrature
-from lightproof.estimators.analytic_limits import direct_unsupported, shades
-from lightproof.estimators.arcs import disk, disk_behind_disk
-from lightproof.estimators.compiled import strict, strict_kernel
+from lightproof.estimators import cells, enclosure, hard_lights, polygon_lights, quadrature, round_lights, world
+from lightproof.estimators.analytic_limits import direct_unsupported
+from lightproof.estimators.compiled import strict_kernel
 from lightproof.estimators.estimator import Estimator, spread
-from lightproof.estimators.lighting import from_bulbs
-from lightproof.estimators.limits import no_caps, no_cylinders, no_reflections, no_solid_angle
-from lightproof.estimators.polygons import polygon
-from lightproof.estimators.tracing import receive, vector
-from lightproof.estimators.vectors import dot, norm, sub
-from lightproof.estimators.world import (
-    CENTER,
-    DISK,
-    KIND,
-    NORMAL,
-    OVERCAST,
-    RADIANCE,
-    RADIUS,
-    SPHERE,
-    UNIFORM,
-    UPPER,
-    U,
-    build,
-)
+from lightproof.estimators.limits import no_reflections, no_solid_angle
+from lightproof.estimators.sources import desk, irradiance
+from lightproof.estimators.terms import Term, receivers, terms
+from lightproof.estimators.tracing import receive
 from lightproof.method import Rendering
-from lightproof.scene import Scene
+from lightproof.scene import CameraFilm, PointsFilm, Scene
 
-
-@strict
-def from_light(items, k, x, n, shade, contact, pile):
-    """Irradiance at x from item k, per radiance."""
-    item = items[k]
-    center = sub(vector(item, CENTER), x)
-    if item[KIND] == SPHERE:
-        return closed_forms.sphere(norm(center), dot(center, n), item[RADIUS])
-    if item[KIND] != DISK:
-        return polygon(items, k, x, n, contact, pile)
-    normal, radius = vector(item, NORMAL), norm(vector(item, U))
-    blocker = items[shade[k]]
-    if shade[k] < 0 or dot(sub(vector(blocker, CENTER), x), n) <= 0:
-        return disk(center, normal, radius, n)
-    return disk_behind_disk(center, normal, radius, sub(vector(blocker, CENTER), x), norm(vector(blocker, U)), n)
-
-
-@strict
-def from_sky(sky, n):
-    """Irradiance on a plane of normal n from a sky [W/m2]."""
-    if sky[0] == UNIFORM:
-        return math.pi * sky[1]
-    if sky[0] == UPPER:
-        return sky[1] * closed_forms.upper_sky(n[2])
-    if sky[0] == OVERCAST:
-        return sky[1] * closed_forms.overcast_sky(n[2])
-    return sky[1] * closed_forms.sun(-dot(n, vector(sky, 2)), sky[5])
-
-
-@strict
-def irradiance(items, skies, bulbs, x, n, shade, contact, pile):
-    """From everything that shines, directly [W/m2]."""
-    total = from_bulbs(items, bulbs, x, n, contact)
-    for k in range(len(skies)):
-        total += from_sky(skies[k], n)
-    for k in range(len(items)):
-        if items[k, RADIANCE] > 0:
-            total += items[k, RADIANCE] * from_light(items, k, x, n, shade, contact, pile)
-    return total
+KINDS = (hard_lights, polygon_lights, round_lights)  # whose sources the kernels take: each overloads `desk` and `irradiance`
 
 
 @strict_kernel
-def estimate(items, skies, bulbs, film, elements, contact, shade, nodes, out):
-    """Film value of each of `elements`: the weighted sum over `nodes` (m, 3): p, q, weight; `shade` (items) is the index of
-    the disk in front of a disk, or -1; `out` (n, 1)."""
-    pile = np.empty((polygons.PILE, polygons.VERTICES, 3))
+def film(source, curves, elements, first, grid, samples, most, out):
+    """Mean over each of `elements`, the first of which has the number `first` in a film of `grid` (rows, columns), and the nodes
+    that it took: the columns of `out` (n, 2)."""
+    room, mine = desk(source), np.empty((len(curves) + 1, 10))
+    for e in range(len(elements)):
+        count = cells.own(curves, (first + e) // grid[1], (first + e) % grid[1], grid, mine)
+        out[e, 0], out[e, 1] = cells.mean(source, room, elements[e], mine[:count], samples, most)
+
+
+@strict_kernel
+def picture(source, items, skies, film, elements, contact, glow, nodes, out):
+    """Mean radiance of a camera's pixels from a source's light reflected once, over `nodes` (m, 3): p, q, weight; and `glow` times
+    what they see shine; `out` (n, 1)."""
+    room = desk(source)
     for e in range(len(elements)):
         total = 0.0
         for i in range(len(nodes)):
             value, factor, x, n = receive(items, skies, film, elements[e], nodes[i, 0], nodes[i, 1], contact)
+            total += nodes[i, 2] * glow * value
             if factor > 0:
-                value += factor * irradiance(items, skies, bulbs, x, n, shade, contact, pile)
-            total += nodes[i, 2] * value
+                total += nodes[i, 2] * factor * irradiance(source, room, x, n)
         out[e, 0] = total
 
 
 class Analytic(Estimator):
     """Direct light of the shapes that have a closed form, and spheres full of reflected light; `samples` are the nodes of
-    an element, and points need none."""
+    an element, more where it is cut into many pieces, and points need none."""
 
     deterministic = True
-    limits = (no_cylinders, no_caps, no_solid_angle)
+    limits = (no_solid_angle,)
 
     def unsupported(self, scene: Scene) -> str | None:
         if any(surface.side == "inside" for surface in scene.surfaces):
@@ -104,21 +58,41 @@ class Analytic(Estimator):
 
     def build(self, scene: Scene) -> None:
         self.scene = scene
-        self.world = build(scene)
         self.enclosed = any(surface.side == "inside" for surface in scene.surfaces)
-        self.shade = shades(scene, self.world.items)
-        self.extended = bool(np.any(self.world.elements[:, 3:9]))  # points have no cells
+        self.camera = isinstance(scene.film, CameraFilm)
+        self.world = world.build(scene) if self.enclosed or self.camera else None
+        self.terms = [] if self.enclosed else terms(scene)
+        self.receivers = receivers(scene)
 
     def warm_up(self) -> None:
         self.render(1, seed=0)
 
     def render(self, samples: int, seed: int) -> Rendering:
-        nodes = quadrature.square(samples if self.extended else 1)
+        extended = not isinstance(self.scene.film, PointsFilm)
+        nodes = quadrature.square(samples if extended else 1)
+        if not (self.terms or self.enclosed or self.camera):
+            return Rendering(np.zeros(self.size), 1)
         if self.enclosed:
             return Rendering(enclosure.film(self.scene, self.world.elements, nodes), len(nodes))
-        items, skies, bulbs, film, rows, contact = self.world.arrays
+        if self.camera:
+            return Rendering(sum(self.seen(index, nodes) for index in range(len(self.terms))), len(nodes))
+        films = np.array([self.received(term, samples if extended else 1) for term in self.terms])
+        return Rendering(films[..., 0].sum(axis=0), max(1, round(films[..., 1].mean())))
+
+    def seen(self, index: int, nodes: np.ndarray) -> np.ndarray:
+        """Film (n,) of what a camera sees of one term's light; what shines itself goes with the first."""
+        items, skies, _, film, rows, contact = self.world.arrays
+        source, glow = self.terms[index].source, float(index == 0)
 
         def add(first: int, last: int, span: tuple[int, int], out: np.ndarray) -> None:
-            estimate(items, skies, bulbs, film, rows[first:last], contact, self.shade, nodes, out)
+            picture(source, items, skies, film, rows[first:last], contact, glow, nodes, out)
 
-        return Rendering(spread(add, self.size, 1, 1, self.threads)[:, 0], len(nodes))
+        return spread(add, self.size, 1, 1, self.threads)[:, 0]
+
+    def received(self, term: Term, samples: int) -> np.ndarray:
+        """Film and nodes (n, 2) of one term."""
+
+        def add(first: int, last: int, span: tuple[int, int], out: np.ndarray) -> None:
+            film(term.source, term.curves, self.receivers[first:last], first, self.scene.film.grid, samples, term.most, out)
+
+        return spread(add, self.size, 1, 2, self.threads)

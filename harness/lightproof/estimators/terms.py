@@ -1,0 +1,143 @@
+"""A scene's direct light as a sum of terms: a source with what blocks it, and the curves between which a film of it is smooth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lightproof import geometry
+from lightproof.estimators import elements, hard_curves, soft_curves, world
+from lightproof.estimators.analytic_limits import receiving_planes, shades
+from lightproof.estimators.blockers import encloses
+from lightproof.estimators.cells import HIGHEST
+from lightproof.estimators.flats import Plane, polygon_light
+from lightproof.estimators.hard_curves import Rays
+from lightproof.estimators.hard_lights import TOUCH, Bulb, Solids
+from lightproof.estimators.quadrature import ORDER
+from lightproof.estimators.round_lights import Rounds
+from lightproof.estimators.sheet import Sheet, tidied
+from lightproof.estimators.soft_curves import above
+from lightproof.geometry import Cylinder, Disk, Polygon, Sphere
+from lightproof.scene import (
+    AreaLight,
+    DirectionalLight,
+    Environment,
+    OvercastSky,
+    PlaneFilm,
+    PointLight,
+    PointsFilm,
+    Scene,
+    SunDisc,
+    Surface,
+)
+
+SKIES = Environment | SunDisc | OvercastSky
+SOLID = AreaLight | Surface
+
+
+@dataclass(frozen=True)
+class Term:
+    """A `source` for the kernels, the `curves` (m, 10) of its light on a plane film, and how many nodes a rule over an element
+    may have at `most` a side: few where the light has edges that no curve follows."""
+
+    source: Any
+    curves: np.ndarray
+    most: int
+
+
+def terms(scene: Scene) -> list[Term]:
+    """One term for each polygon that shines, each point light and each beam, and one for all disks, spheres and skies."""
+    things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, SOLID) and not encloses(item)]
+    sheet = Sheet.of(scene.film) if isinstance(scene.film, PlaneFilm) else None
+    bulbs = [light for light in scene.lights if isinstance(light, PointLight | DirectionalLight)]
+    return [*soft(scene, things, sheet), *hard(scene, bulbs, things, sheet), *rounds(scene)]
+
+
+def soft(scene: Scene, things: list[SOLID], sheet: Sheet | None) -> Iterator[Term]:
+    flats = [thing for thing in things if isinstance(thing.shape, Polygon)]
+    reach = farthest(scene)
+    for lamp in flats:
+        if lamp.radiance:
+            blockers = [thing.shape for thing in flats if thing is not lamp and stands_before(scene, thing.shape, lamp.shape)]
+            source = polygon_light(lamp.shape, lamp.radiance, blockers, reach)
+            loops = [np.array(shape.vertices) for shape in (lamp.shape, *blockers)]
+            yield Term(source, tidied(soft_curves.curves(sheet, loops[0], loops[1:]) if sheet else []), HIGHEST)
+
+
+def stands_before(scene: Scene, shape: Polygon, lamp: Polygon) -> bool:
+    """Whether any of a polygon lies in front of a light's plane and of the receivers', where they have one."""
+    corners = np.array(shape.vertices)
+    planes = [(np.array(lamp.vertices[0]), lamp.normal), *filter(None, receiving_planes(scene))]
+    return all(len(above(corners, normal, point)) for point, normal in planes)
+
+
+def farthest(scene: Scene) -> float:
+    """The largest coordinate of any receiver [m]."""
+    match scene.film:
+        case PlaneFilm() as film:
+            return float(np.abs([film.origin, film.u, film.v]).sum(axis=0).max())
+        case PointsFilm() as film:
+            return float(np.abs(film.positions).max())
+    return float(np.abs(scene.film.origin).max())
+
+
+def hard(scene: Scene, bulbs: list[PointLight | DirectionalLight], things: list[SOLID], sheet: Sheet | None) -> Iterator[Term]:
+    shapes = [thing.shape for thing in things]
+    for bulb in bulbs:
+        beam = isinstance(bulb, DirectionalLight)
+        place = np.array(bulb.direction if beam else bulb.position, float)
+        source = Bulb(
+            position=tuple((-place if beam else place).tolist()),
+            strength=float(bulb.irradiance if beam else bulb.intensity),
+            reach=np.inf if beam else 1.0,
+            solids=solids(shapes, max(farthest(scene), 0.0 if beam else float(np.abs(place).max()))),
+        )
+        yield Term(source, tidied(hard_curves.curves(sheet, Rays(place, beam), shapes) if sheet else []), HIGHEST)
+
+
+def solids(shapes: list[geometry.Shape], reach: float) -> Solids:
+    """What may stand between a light and receivers with coordinates up to `reach` [m]."""
+    loops = [np.array(shape.vertices) for shape in shapes if isinstance(shape, Polygon)]
+    planes = [Plane.of(shape) for shape in shapes if isinstance(shape, Polygon)]
+    rows = {
+        kind: np.array([round_row(shape) for shape in shapes if isinstance(shape, kind)], float).reshape(-1, 8)
+        for kind in (Disk, Sphere, Cylinder)
+    }
+    return Solids(
+        corners=np.concatenate([np.zeros((0, 3)), *loops]),
+        starts=np.cumsum([0, *map(len, loops)]),
+        normals=np.array([(plane.frame[2], plane.low) for plane in planes], float).reshape(-1, 2, 3),
+        disks=rows[Disk],
+        balls=rows[Sphere],
+        tubes=rows[Cylinder],
+        touch=TOUCH * reach,
+    )
+
+
+def round_row(shape: Disk | Sphere | Cylinder) -> list[float]:
+    match shape:
+        case Disk():
+            return [*shape.center, *geometry.unit(np.array(shape.normal)), shape.radius, 0.0]
+        case Sphere():
+            return [*shape.center, 0.0, 0.0, 0.0, shape.radius, 0.0]
+    return [*shape.base, *geometry.unit(np.array(shape.axis)), shape.radius, shape.height]
+
+
+def rounds(scene: Scene) -> Iterator[Term]:
+    things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, SOLID) and item.radiance]
+    if any(isinstance(light, SKIES) for light in scene.lights) or any(not isinstance(item.shape, Polygon) for item in things):
+        whole = world.build(scene)
+        shade = shades(scene, whole.items)
+        yield Term(Rounds(whole.items, whole.skies, shade), tidied([]), ORDER if (shade >= 0).any() else HIGHEST)
+
+
+def receivers(scene: Scene) -> np.ndarray:
+    """Rows (n, 12) of the film's elements, see `world.film_rows`; the normals of points as they are given."""
+    _, rows = world.film_rows(scene.film)
+    if isinstance(scene.film, PointsFilm):
+        rows[:, elements.NORMAL] = scene.film.normals
+    return rows
+
