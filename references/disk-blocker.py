@@ -4,7 +4,8 @@ On the light's plane the blocker's shadow is a disk, and what it leaves of the l
 line of centres are elementary; a Gauss rule in the angle along each arc adds them up. The irradiance E depends on the distance
 r from the axis alone, so a cell's flux is that of the field F(r)/r^2 (x, y) out of it, where F is the integral of E r dr. F is
 a Chebyshev series between the distances at which the rims seem to touch; a sine takes the square roots there away. 30 digits;
-rules and series twice as long change the binary64 of no element. Prints the base case as JSON.
+rules and series twice as long change the binary64 of no element. Points off the axis: row by row, as in
+round-shadows.py. Prints the base case as JSON.
 """
 
 import json
@@ -12,6 +13,7 @@ import tomllib
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
+from runpy import run_path
 
 from mpmath import acos, asin, atan, cos, mp, mpf, pi, sin, sqrt
 from mpmath.calculus.quadrature import GaussLegendre
@@ -24,6 +26,8 @@ TERMS = 60
 def values(scene, elements):
     """Mean irradiance [W/m2] of the film's elements; `scene` is the table of a scene file."""
     film, (lamp,), (surface,) = scene["film"], scene["light"], scene["surface"]
+    if film["kind"] == "points":
+        return run_path(str(Path(__file__).with_name("round-shadows.py")))["values"](scene, elements)
     light, blocker = lamp["shape"], surface["shape"]
     assert light["center"][:2] == blocker["center"][:2] and light["normal"][:2] == blocker["normal"][:2] == [0, 0]
     assert film["u"][1:] == [0, 0] and film["v"][::2] == [0, 0]

@@ -2,12 +2,13 @@
 
 Cells: E = integral over the disk of L cos cos / r^2 dA in polar coordinates, Gauss in the radius (20) and equal angles (64),
 times a 10 x 10 Gauss rule on the cell, in binary64; the integrand is positive and smooth. Points: the closed form in 30
-digits. Prints the base case as JSON.
+digits; behind the horizon's cut, row by row as in round-shadows.py. Prints the base case as JSON.
 """
 
 import json
 import tomllib
 from pathlib import Path
+from runpy import run_path
 
 import numpy as np
 from mpmath import mp, mpf, pi, sqrt
@@ -19,6 +20,8 @@ RADII, ANGLES, ON_CELL = 20, 64, 10
 def values(scene, elements):
     """Irradiance [W/m2] of the film's elements; `scene` is the table of a scene file."""
     film, lamp = scene["film"], scene["light"][0]
+    if film["kind"] == "points" and any(normal != [0, 0, 1] for normal in film["normals"]):
+        return run_path(str(Path(__file__).with_name("round-shadows.py")))["values"](scene, elements)
     if film["kind"] == "points":
         return [float(parallel(lamp, film["positions"][element], film["normals"][element])) for element in elements]
     points, weights, normal = disk(lamp["shape"])

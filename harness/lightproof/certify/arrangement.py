@@ -7,8 +7,9 @@ Lambert's contour integral runs along that. Crossings are balls: what happens in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations
 
 from flint import arb
@@ -47,23 +48,25 @@ def visible(light: Outline, horizon: Outline, blockers: Sequence[Outline]) -> Ou
 
 def irradiance(seen: Outline, normal: Vector) -> arb:
     """Irradiance per radiance [sr] of a receiver with unit `normal`, from a part above its horizon. Raises Undecided."""
-    circles = list({circle.key: circle for circle in seen.circles}.values())
-    marks: dict[object, list[arb]] = {circle.key: [] for circle in circles}
-    for a, b in combinations(circles, 2):
+    first = {circle.key: circle for circle in reversed(seen.circles)}
+    same = {id(circle): first[circle.key] for circle in seen.circles}
+    marks: dict[int, list[arb]] = {id(circle): [] for circle in first.values()}
+    for a, b in combinations(first.values(), 2):
         for direction in crossings(a, b):
-            marks[a.key].append(a.angle(direction))
-            marks[b.key].append(b.angle(direction))
-    return sum((_boundary(seen, circle, marks[circle.key], normal) for circle in circles), arb(0)) / 2
+            marks[id(a)].append(a.angle(direction))
+            marks[id(b)].append(b.angle(direction))
+    sign_at = partial(_sign, seen, same)
+    return sum((_boundary(sign_at, circle, marks[id(circle)], normal) for circle in first.values()), arb(0)) / 2
 
 
-def _boundary(seen: Outline, circle: Circle, marks: Iterable[arb], normal: Vector) -> arb:
+def _boundary(sign_at: Callable[[Circle, arb], int], circle: Circle, marks: Iterable[arb], normal: Vector) -> arb:
     """The contour integral along the parts of a circle on which the boundary lies."""
     cuts = merged(marks)
     if not cuts:
-        return _sign(seen, circle, arb(0)) * circle.contour(-arb.pi(), arb.pi(), normal)
+        return sign_at(circle, arb(0)) * circle.contour(-arb.pi(), arb.pi(), normal)
     ends = [*cuts[1:], (cuts[0][0] + 2 * arb.pi(), arb(0), True)]
     spans = [(cut[1], after[0]) for cut, after in zip(cuts, ends, strict=True)]
-    signs = [_sign(seen, circle, (start.mid() + end.mid()) / 2) if start < end else None for start, end in spans]
+    signs = [sign_at(circle, (start.mid() + end.mid()) / 2) if start < end else None for start, end in spans]
     total = sum((sign * circle.contour(*span, normal) for sign, span in zip(signs, spans, strict=True) if sign), arb(0))
     for cut, span, before, after in zip(cuts, spans, signs[-1:] + signs[:-1], signs, strict=True):
         total += _bound(circle, cut, before, after) + _bound(circle, (*span, False), None, None) * (after is None)
@@ -77,18 +80,19 @@ def _bound(circle: Circle, cut: Cut, before: int | None, after: int | None) -> a
     return arb(0, (abs(cut[1] - cut[0]) * circle.steepest).abs_upper())
 
 
-def _sign(seen: Outline, circle: Circle, angle: arb) -> int:
-    """1 where the visible part is on the left of a circle only, -1 where it is on the right only, else 0."""
+def _sign(seen: Outline, same: Mapping[int, Circle], circle: Circle, angle: arb) -> int:
+    """1 where the visible part is on the left of a circle only, -1 where it is on the right only, else 0; `same` is the circle
+    that stands for each of those that coincide, by identity."""
     direction = circle.at(angle)
-    known: dict[object, bool] = {}
+    known: dict[int, bool] = {}
 
     def left(other: Circle) -> bool:
-        if other.key not in known:
-            known[other.key] = other.left(direction)
-        return known[other.key]
+        if id(other) not in known:
+            known[id(other)] = other.left(direction)
+        return known[id(other)]
 
     def beside(on_left: bool) -> bool:
-        return seen.contains(lambda other: on_left == circle.along(other) if other.key == circle.key else left(other))
+        return seen.contains(lambda other: on_left == circle.along(other) if same.get(id(other)) is circle else left(other))
 
     return beside(True) - beside(False)
 

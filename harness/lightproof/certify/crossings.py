@@ -70,22 +70,23 @@ class Wave:
             if len(parts) > MOST_PARTS:
                 raise Undecided("the rims of two disks coincide as a receiver sees them")
             part = parts.pop()
-            slope = self.slope(part)
-            if not (self(part.mid()) + slope * (part - part.mid())).contains(0):
+            rest = self._step(part)
+            if not rest.overlaps(part):
                 continue
-            if not slope.contains(0):
-                found.append(self._narrowed(part))
+            rest = rest.intersection(part)
+            if 2 * rest.rad() < part.rad():
+                parts.append(rest)
             elif part.rad() < arb(2) ** (8 - ctx.prec // 2):
-                found.append(part)
+                found.append(rest)
             else:
                 parts += [part.mid() + part.rad() / 2 * (sign + arb(0, 1)) for sign in (-1, 1)]
         return found
 
-    def _narrowed(self, part: arb) -> arb:
-        """Newton's method where the slope has one sign, as far as it goes; where there is no root, some ball in the part."""
-        while True:
-            middle = part.mid()
-            rest = middle - self(middle) / self.slope(part)
-            if not rest.overlaps(part) or not 2 * rest.rad() < part.rad():
-                return part
-            part = rest.intersection(part)
+    def _step(self, part: arb) -> arb:
+        """A ball that holds every root in a part: by Newton's method, or the part itself where its slope may vanish; or one
+        outside the part, where there is no root."""
+        middle = part.mid()
+        value, slope = self(middle), self.slope(part)
+        if slope.contains(0):
+            return part if (value + slope * (part - middle)).contains(0) else part + 4 * part.rad()
+        return middle - value / slope
