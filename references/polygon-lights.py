@@ -15,7 +15,7 @@ from mpmath import atan, log, mp, mpf, sqrt
 
 mp.dps = 30
 RULE = list(zip(*mp.gauss_quadrature(16), strict=True))  # nodes and weights on [-1, 1]
-SCENES = ("square-light", "triangle-light")
+SCENES = ("l-shaped-light", "square-light", "triangle-light")
 
 
 def values(scene, elements):
@@ -67,7 +67,7 @@ def ln_along(x, a, other, length):
 
 
 def in_front(corners, origin, normal):
-    """The part of a convex polygon in front of a plane."""
+    """The part of a polygon in front of a plane; edges that join pieces along the plane are run through both ways and cancel."""
     heights = [dot(sub(corner, origin), normal) for corner in corners]
     kept = []
     for i, (corner, height) in enumerate(zip(corners, heights, strict=True)):
