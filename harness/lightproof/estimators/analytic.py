@@ -49,6 +49,7 @@ class Analytic(Estimator):
     an element, more where it is cut into many pieces, and points need none."""
 
     deterministic = True
+    lengths = (1e-60, 1e60)
     limits = (no_solid_angle,)
 
     def unsupported(self, scene: Scene) -> str | None:

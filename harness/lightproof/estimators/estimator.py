@@ -13,6 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from lightproof.estimators.limits import extreme
 from lightproof.method import Method
 from lightproof.scene import Scene
 
@@ -21,16 +22,18 @@ SHARES = 4  # of a thread in the work, handed out as it gets done: evens out wha
 
 
 class Estimator(Method):
-    """A method of ours: `limits` say what it cannot do, `build` takes a scene, `warm_up` runs every kernel once."""
+    """A method of ours: `limits` say what it cannot do, `lengths` [m] between which the largest of a scene has to be; `build`
+    takes a scene, `warm_up` runs every kernel once."""
 
     precision: ClassVar[str] = "float64"
+    lengths: ClassVar[tuple[float, float]] = (1e-9, 1e9)  # as float32 allows
     limits: ClassVar[tuple[Callable[[Scene], str | None], ...]] = ()
 
     def version(self) -> str:
         return version("lightproof")
 
     def unsupported(self, scene: Scene) -> str | None:
-        return next((reason for limit in self.limits if (reason := limit(scene))), None)
+        return extreme(scene, *self.lengths) or next((reason for limit in self.limits if (reason := limit(scene))), None)
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()

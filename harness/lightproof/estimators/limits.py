@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from lightproof import geometry
 from lightproof import scene as scenes
 from lightproof.scene import CameraFilm, Scene
+
+LENGTHS = ("vertices", "center", "base", "radius", "height", "position", "positions", "origin", "u", "v", "target", "width")
+
+
+def extreme(scene: Scene, least: float, most: float) -> str | None:
+    """Whether the largest length of a scene [m] is out of a range, in which the fourth powers of lengths neither over- nor
+    underflow; nothing has a length where all is in the origin."""
+    shapes = [item.shape for item in (*scene.lights, *scene.surfaces) if hasattr(item, "shape")]
+    lengths = [getattr(thing, name) for thing in (*shapes, *scene.lights, scene.film) for name in LENGTHS if hasattr(thing, name)]
+    largest = max(float(np.abs(length).max()) for length in lengths)
+    fits = largest == 0 or least <= largest <= most
+    return None if fits else f"the scene's largest length, {largest:.3g} m, is out of its range of {least:g} to {most:g} m"
 
 
 def no_cylinders(scene: Scene) -> str | None:
