@@ -55,7 +55,8 @@ class Contour:
     @classmethod
     def at(cls, edges: Loop, receiver: Point) -> Contour:
         """The contour of a loop for this receiver alone."""
-        return cls.of(chords(edges, receiver), receiver)
+        joined = all(before[1] == here[0] for before, here in zip(edges[-1:] + edges[:-1], edges, strict=True))
+        return cls.of(edges if joined else chords(edges, receiver), receiver)
 
     def outline(self, x: Vector) -> tuple[list[Vector], list[Vector]]:
         """Inward normals of the great circles on which the edges are seen, and the directions in which each edge begins."""

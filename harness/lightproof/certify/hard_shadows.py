@@ -63,15 +63,15 @@ def _way(light: Light, x: Point) -> tuple[Point, Number | None]:
 
 def _shadows(light: Light, blockers: Sequence[Shape], receiver: Plane) -> list[list[Plane]]:
     """For each convex part of the blockers the planes all of which have its shadow on the receiver's plane in front."""
-    parts = [part for blocker in blockers for part in above(_corners(blocker, light), receiver)]
+    parts = [part for blocker in blockers for part in above(_polygon(blocker, light), receiver)]
     return [sides for part in parts if (sides := _sides(light, part))]
 
 
-def _corners(shape: Shape, light: Light) -> Convex:
+def _polygon(shape: Shape, light: Light) -> geometry.Polygon:
     if not isinstance(shape, geometry.Polygon):
         raise CannotCertify(f"a {type(shape).__name__.lower()} stands before light '{light.id}': its shadow's edge is"
                             " curved, which is covered at points only")
-    return tuple(point(corner) for corner in shape.vertices)
+    return shape
 
 
 def _sides(light: Light, part: Convex) -> list[Plane]:

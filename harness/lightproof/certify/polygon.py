@@ -40,6 +40,8 @@ def clip(corners: Sequence[Point], normal: Point, offset: Number) -> tuple[Point
     heights = [dot(normal, corner) - offset for corner in corners]
     if not any(height > 0 for height in heights):
         return ()
+    if all(height >= 0 for height in heights):
+        return tuple(corners)
     kept = []
     for i, (here, height) in enumerate(zip(corners, heights, strict=True)):
         before, depth = corners[i - 1], heights[i - 1]

@@ -34,10 +34,9 @@ def provenance_of(light: AreaLight, blockers: list[Shape]) -> Provenance:
 def field(light: AreaLight, blockers: list[Shape], receiver: Plane) -> Field:
     """Lambert's formula for what the receiver sees of a polygon light above its horizon and past the blockers. Raises
     CannotCertify."""
-    corners = tuple(point(corner) for corner in light.shape.vertices)
-    face, radiance, normal = planes.of(corners), exact(light.radiance), unit(receiver.normal)
+    face, radiance, normal = _face(light.shape), exact(light.radiance), unit(receiver.normal)
     between = tuple(part for blocker in blockers for part in above(_polygon(blocker), receiver, face))
-    parts = above(corners, receiver)
+    parts = above(light.shape, receiver)
 
     def near(x: Point) -> Formula:
         lamp, shades = (contact.limit(tiles, x, receiver.normal) for tiles in (parts, between))
@@ -56,12 +55,22 @@ def field(light: AreaLight, blockers: list[Shape], receiver: Plane) -> Field:
     return Field(near, None, flux)
 
 
-def above(corners: Convex, *floors: Plane) -> tuple[Convex, ...]:
+def above(polygon: geometry.Polygon, *floors: Plane) -> tuple[Convex, ...]:
     """Convex polygons that tile the part of a polygon in front of some planes."""
-    parts = [part for _, part in convex_parts(corners)]
+    parts = _tiles(polygon)
     for floor in floors:
         parts = _clipped(parts, floor)
     return tuple(parts)
+
+
+@cache
+def _tiles(polygon: geometry.Polygon) -> tuple[Convex, ...]:
+    return tuple(part for _, part in convex_parts([point(corner) for corner in polygon.vertices]))
+
+
+@cache
+def _face(polygon: geometry.Polygon) -> Plane:
+    return planes.of([point(corner) for corner in polygon.vertices])
 
 
 def _clipped(parts: Iterable[Convex], floor: Plane) -> list[Convex]:
@@ -74,10 +83,10 @@ def _faces(face: Plane, x: Point, receiver: Plane) -> bool:
     return bool(height > 0 or (height == 0 and dot(face.normal, receiver.normal) > 0))
 
 
-def _polygon(shape: Shape) -> Convex:
+def _polygon(shape: Shape) -> geometry.Polygon:
     if not isinstance(shape, geometry.Polygon):
         raise CannotCertify(f"a {type(shape).__name__.lower()} stands before a polygon light; only polygon blockers are covered")
-    return tuple(point(corner) for corner in shape.vertices)
+    return shape
 
 
 def _seen(light: Iterable[Convex], blockers: Iterable[Convex], x: Point) -> list[Loop]:
