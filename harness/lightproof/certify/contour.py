@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import itemgetter
 
 from flint import acb, arb, fmpq
 
@@ -12,6 +11,7 @@ from lightproof.certify.balls import Ball, CannotCertify, Number, Point, Vector,
 from lightproof.certify.polygon import Edge, Loop, chords
 
 HALF = fmpq(1, 2)
+BEYOND = "the line of an edge is seen to cross another one infinitely far off, or beyond that"
 
 
 @dataclass(frozen=True)
@@ -134,21 +134,28 @@ def _corner(edges: Loop, i: int, receiver: Point) -> Corner:
         return Corner(i, i - 1, arb(0), arb(1), (), ())
     along = _meeting(here, before)
     if along is not None:
-        return Corner(i, i - 1, arb(along), arb(_meeting(before, here)), (), ())
-    crossings = (_crossing(edges, *pair, receiver) for pair in ((i, i - 1), (i - 1, i)))
-    edge, other, above, below, _ = max(crossings, key=itemgetter(4))
-    return Corner(edge % len(edges), other, None, None, _ball(above), _ball(below))
+        seen = minus(plus(here[0], times(minus(here[1], here[0]), along)), receiver)
+        corner = Corner(i, i - 1, arb(along), arb(_meeting(before, here)), (), ())
+    else:
+        edge, other, above, below, seen = max((_crossing(edges, *pair, receiver) for pair in ((i, i - 1), (i - 1, i))), key=_far)
+        corner = Corner(edge % len(edges), other, None, None, _ball(above), _ball(below))
+    if dot(cross(circle(before, receiver), circle(here, receiver)), seen) < 0:
+        raise CannotCertify(BEYOND)
+    return corner
 
 
-def _crossing(edges: Loop, i: int, other: int, receiver: Point) -> tuple[int, int, Vector, Vector, Number]:
-    """Where the great circle of another edge crosses an edge, and the square of how far from the receiver that is."""
+def _far(crossing: tuple[int, int, Vector, Vector, Vector]) -> Number:
+    return dot(crossing[-1], crossing[-1])
+
+
+def _crossing(edges: Loop, i: int, other: int, receiver: Point) -> tuple[int, int, Vector, Vector, Vector]:
+    """Where the great circle of another edge crosses an edge, and that point as seen from the receiver."""
     (start, end), (first, last) = edges[i], edges[other]
     run, way, ray = minus(end, start), minus(last, first), minus(first, receiver)
     above, below = cross(way, minus(first, start)), cross(way, run)
     if dot(ray, below) == 0:
-        raise CannotCertify("an edge is seen to cross another one infinitely far off")
-    seen = plus(minus(start, receiver), times(run, dot(ray, above) / dot(ray, below)))
-    return i, other, above, below, dot(seen, seen)
+        raise CannotCertify(BEYOND)
+    return i, other, above, below, plus(minus(start, receiver), times(run, dot(ray, above) / dot(ray, below)))
 
 
 def _ball(vector: Point) -> Vector:
