@@ -7,18 +7,20 @@ shows, and over the part of a surface that reflects `direct` integrates irradian
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import cache
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from itertools import combinations
 
 from flint import arb, fmpq
 
 from lightproof import geometry, scene
-from lightproof.certify import direct, faces, planes, provenance, skies_seen
-from lightproof.certify.balls import CannotCertify, Element, Number, Point, Rational, dot, exact, plus, point
+from lightproof.certify import direct, faces, planes, provenance, skies_seen, unseen
+from lightproof.certify.balls import CannotCertify, Element, Number, Rational, dot, exact, point
 from lightproof.certify.camera import Camera
 from lightproof.certify.faces import Face
-from lightproof.certify.planes import Plane, Region
+from lightproof.certify.field import Field
+from lightproof.certify.planes import Line, Plane, Region
 from lightproof.certify.provenance import Provenance
 from lightproof.scene import AreaLight, CameraFilm, Scene, Surface
 
@@ -46,47 +48,58 @@ def _before(surface: Surface, scene_: Scene) -> Scene:
 
 def solve(scene_: Scene) -> Element:
     """Mean radiance of each pixel. Raises CannotCertify."""
-    camera = Camera.of(scene_.film)
     _check_reflections(scene_)
+    camera = Camera.of(scene_.film)
     polygons = _polygons(scene_, camera)
     lines = sorted(faces.lines(polygons, camera) | skies_seen.lines(camera))
-    error = _brightest(scene_, polygons) * camera.blur
-    fields = cache(lambda plane: direct.fields(scene_, plane))
+    error = arb(0, (_brightest(scene_, polygons) * camera.blur).abs_upper())
+    return Picture(scene_, camera, polygons, lines, error, cache(partial(direct.fields, scene_))).pixel
 
-    def radiance(region: Region) -> Number:
-        face = faces.nearest(polygons, camera, planes.centre(region))
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What a camera may see: polygons, and the lines in which what it sees may change; `error` bounds what the stand-ins for
+    pixels make wrong, and `fields` gives the irradiance on the front of a plane."""
+
+    scene: Scene
+    camera: Camera
+    polygons: list[Face]
+    lines: list[Line]
+    error: arb
+    fields: Callable[[Plane], list[Field]]
+
+    def pixel(self, index: int) -> arb:
+        """Mean radiance of a pixel; without error where all of it shows one that is known without. Raises CannotCertify."""
+        region = self.camera.pixel(index)
+        wide = self.camera.wide(region)
+        unseen.check_round(_solids(self.scene), self.camera, wide)
+        shown = self._parts(region)
+        if _level(shown) and _level([*shown, *self._parts(wide)]):
+            return arb(shown[0][1])
+        return sum((area * value for area, value in shown), arb(0)) / planes.area(region) + self.error
+
+    def _parts(self, region: Region) -> list[tuple[Rational, Number]]:
+        """Area and mean radiance of the parts into which outlines cut a region."""
+        return [(planes.area(part), self._radiance(part)) for part in planes.cut(region, self.lines)]
+
+    def _radiance(self, region: Region) -> Number:
+        """Mean radiance of a region that no outline crosses."""
+        middle = planes.centre(region)
+        face = faces.nearest(self.polygons, self.camera, middle)
         if face is None:
-            return skies_seen.radiance(scene_.lights, camera, region)
-        if not _in_front(face, region):
+            return skies_seen.radiance(self.scene.lights, self.camera, region)
+        if face.plane.height(self.camera.ray(*middle)[0]) < 0:
             return fmpq(0)
         if not face.reflectance:
             return face.radiance
-        return face.radiance + face.reflectance / arb.pi() * direct.mean_over(face.view, fields(face.plane), region)
-
-    def parts(region: Region) -> list[tuple[Rational, Number]]:
-        return [(planes.area(part), radiance(part)) for part in planes.cut(region, lines)]
-
-    def element(index: int) -> arb:
-        pixel = camera.pixel(index)
-        _check_round(scene_, camera, pixel)
-        shown = parts(pixel)
-        if _level(shown) and _level([*shown, *parts(camera.wide(pixel))]):
-            return arb(shown[0][1])
-        total = sum((area * value for area, value in shown), arb(0))
-        return total / planes.area(pixel) + arb(0, error.abs_upper())
-
-    return element
+        irradiance = direct.mean_over(face.view, self.fields(face.plane), region)
+        return face.radiance + face.reflectance / arb.pi() * irradiance
 
 
 def _level(shown: list[tuple[Rational, Number]]) -> bool:
     """Whether all parts show the same radiance, known without error."""
     values = [arb(value) for _, value in shown]
     return all(value.is_exact() and value == values[0] for value in values)
-
-
-def _in_front(face: Face, region: Region) -> bool:
-    start, _ = face.view.camera.ray(*planes.centre(region))
-    return face.plane.height(start) > 0
 
 
 def _polygons(scene_: Scene, camera: Camera) -> list[Face]:
@@ -123,39 +136,6 @@ def _behind(surface: Surface, other: Surface) -> bool:
     if not isinstance(surface.shape, geometry.Polygon):
         return False
     return direct.lies_on(other.shape, planes.of([point(corner) for corner in surface.shape.vertices]))
-
-
-def _check_round(scene_: Scene, camera: Camera, pixel: Region) -> None:
-    """Raises CannotCertify where a pixel may see anything round."""
-    for item in _solids(scene_):
-        if not isinstance(item.shape, geometry.Polygon) and not _out_of_view(item.shape, camera, pixel):
-            raise CannotCertify(f"a pixel may see the {type(item.shape).__name__.lower()} '{item.id}'; a camera is covered where"
-                                " it sees polygons alone, or one sphere alone")
-
-
-def _out_of_view(shape: geometry.Shape, camera: Camera, pixel: Region) -> bool:
-    """Whether one of the planes around all that a pixel sees has a ball about the shape on its outer side."""
-    centre, squared = _ball(shape)
-    start, along = camera.ray(*planes.centre(pixel))
-    inside = plus(start, along)
-    for plane in _sides(camera, pixel):
-        height = plane.height(centre)
-        if height * plane.height(inside) < 0 and height * height >= squared * dot(plane.normal, plane.normal):
-            return True
-    return False
-
-
-def _sides(camera: Camera, pixel: Region) -> list[Plane]:
-    """Planes through the pixel's sides, and the camera's own."""
-    rays = [(start, plus(start, along)) for start, along in (camera.ray(*corner) for corner in pixel)]
-    return [camera.film, *(planes.through(*rays[i - 1], rays[i][1]) for i in range(len(rays)))]
-
-
-def _ball(shape: geometry.Shape) -> tuple[Point, Rational]:
-    """Centre and squared radius of a ball that holds a round shape."""
-    if isinstance(shape, geometry.Cylinder):
-        return point(shape.base), exact(shape.height) ** 2 + exact(shape.radius) ** 2
-    return point(shape.center), exact(shape.radius) ** 2
 
 
 def _brightest(scene_: Scene, polygons: list[Face]) -> Number:
