@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from flint import acb, arb, fmpq
 
 from lightproof.certify.balls import Ball, CannotCertify, Number, Point, Vector, angle, cross, dot, minus, plus, root, times
-from lightproof.certify.polygon import Edge, Loop, chords
+from lightproof.certify.polygon import Edge, Loop, chords, circle
 
 HALF = fmpq(1, 2)
 BEYOND = "the line of an edge is seen to cross another one infinitely far off, or beyond that"
