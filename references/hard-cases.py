@@ -1,10 +1,10 @@
 """Second derivation for the hard cases of direct light: the area form, in polar coordinates around the receiver's foot.
 
-In the plane of a flat light, h below the receiver, the integral of cos cos / r^2 along a ray from the foot is elementary, so
-the light is a sum over its rim of w x dw times `ray`, w the rim's place as seen from the foot. Along the rim, Gauss rules in
-u, where the place is proportional to sinh(u): there the integrand is as smooth for rims that nearly touch the foot as for
-those far away. Shadows are convex polygons, projected onto the light's plane and taken away. A sphere is summed up ring by
-ring of its cone of directions. 60 digits, as slivers cancel.
+In the plane of a flat light, h below the receiver, the integral of cos cos / r^2 (for solid angles of cos / r^2) along a ray
+from the foot is elementary, so the light is a sum over its rim of w x dw times `ray`, w the rim's place as seen from the
+foot. Along the rim, Gauss rules in u, where the place is proportional to sinh(u): there the integrand is as smooth for rims
+that nearly touch the foot as for those far away. Shadows are convex polygons, projected onto the light's plane and taken
+away. A sphere is summed up ring by ring of its cone of directions. 60 digits, as slivers cancel.
 """
 
 import json
@@ -23,43 +23,43 @@ mp.dps = 60
 
 
 def values(scene, elements):
-    """Irradiance [W/m2] at the film's points; `scene` is the table of a scene file."""
+    """Irradiance [W/m2], or solid angle [sr], at the film's points; `scene` is the table of a scene file."""
     blockers, receivers = [surface["shape"] for surface in scene.get("surface", [])], points(scene["film"])
-    return [float(sum(irradiance(lamp, blockers, *receivers[element]) for lamp in scene["light"])) for element in elements]
+    return [float(sum(seen(lamp, blockers, *receivers[element]) for lamp in scene["light"])) for element in elements]
 
 
 def points(film):
     """Positions and normals; of a plane the cells' corners, which will do where no light shines."""
     if film["kind"] == "points":
-        return list(zip(film["positions"], film["normals"], strict=True))
+        return list(zip(film["positions"], film.get("normals", [None] * len(film["positions"])), strict=True))
     origin, u, v = (vector(film[key]) for key in ("origin", "u", "v"))
     columns, rows = film["resolution"]
     return [(add(origin, add(scale(u, mpf(column) / columns), scale(v, mpf(row) / rows))), cross(u, v))
             for row in range(rows) for column in range(columns)]
 
 
-def irradiance(lamp, blockers, position, normal):
-    """From one light, past the blockers, at one point."""
-    x, n = vector(position), unit(vector(normal))
-    shape = lamp["shape"]
+def seen(lamp, blockers, position, normal):
+    """Irradiance from one light past the blockers, or, without a normal, the solid angle that it is seen in."""
+    x, n, shape = vector(position), unit(vector(normal)) if normal else None, lamp["shape"]
+    strength = mpf(lamp["radiance"]) if normal else 1
     if shape["type"] == "sphere":
-        return mpf(lamp["radiance"]) * sphere(shape, x, n)
-    return mpf(lamp["radiance"]) * (disk(shape, x, n) if shape["type"] == "disk" else polygon(shape, blockers, x, n))
+        return strength * sphere(shape, x, n)
+    return strength * (disk(shape, x, n) if shape["type"] == "disk" else polygon(shape, blockers, x, n))
 
 
 def polygon(shape, blockers, x, n):
-    """Irradiance per radiance [sr] of what is seen of a convex polygon."""
+    """Irradiance per radiance, or solid angle [sr], of what is seen of a convex polygon."""
     corners = relative(shape, x)
     face = facing(corners)
     if dot(face, corners[0]) >= 0:  # exact in 60 digits: behind the light, or in its plane
         return mpf(0)
     plane = Plane(unit(face), corners[0], n)
-    seen = flat(plane, clip(corners, lambda corner: dot(corner, n)))
-    total = outline(plane, seen)
+    light = flat(plane, clip(corners, lambda corner: dot(corner, n)) if n else corners)
+    total = outline(plane, light)
     for blocker in blockers:
         solid = relative(blocker, x)
         if any(facing(solid)):
-            total -= outline(plane, common(seen, flat(plane, [projected(plane, corner) for corner in solid])))
+            total -= outline(plane, common(light, flat(plane, [projected(plane, corner) for corner in solid])))
     return total
 
 
@@ -71,11 +71,13 @@ class Plane:
         self.m, self.height = m, -dot(m, corner)
         self.e = unit(cross(m, min(((1, 0, 0), (0, 1, 0), (0, 0, 1)), key=lambda axis: abs(dot(m, axis)))))
         self.f = cross(m, self.e)
-        self.g, self.c = (dot(n, self.e), dot(n, self.f)), dot(n, m)
+        self.g, self.c = (dot(n, self.e), dot(n, self.f)) if n else None, dot(n, m) if n else None
 
     def ray(self, w):
-        """The integral of cos cos / r^2 over a thin wedge from the foot to w, over twice the area of its triangle."""
+        """The integral of cos cos / r^2, or of cos / r^2, over a thin wedge from the foot to w, over twice its area."""
         h, square = self.height, w[0] * w[0] + w[1] * w[1]
+        if self.g is None:
+            return 1 / (square + h * h + h * sqrt(square + h * h))
         rho = sqrt(square)
         bend = (atan(rho / h) - h * rho / (square + h * h)) / (rho * square) if rho else 2 / (3 * h**3)
         return ((self.g[0] * w[0] + self.g[1] * w[1]) * bend - self.c / (square + h * h)) / 2
@@ -118,7 +120,8 @@ def edge(plane, a, b):
 
 
 def disk(shape, x, n):
-    """Irradiance per radiance [sr] of a disk above the horizon. Its near half is run through in u, tan(angle/2) = tau sinh(u)."""
+    """Irradiance per radiance, or solid angle [sr], of a disk above the horizon. On its near half
+    tan(angle/2) = tau sinh(u)."""
     centre, radius = sub(vector(shape["center"]), x), mpf(shape["radius"])
     if dot(vector(shape["normal"]), centre) >= 0:
         return mpf(0)
@@ -143,10 +146,13 @@ def disk(shape, x, n):
 
 
 def sphere(shape, x, n):
-    """Irradiance per radiance [sr] of a sphere, by rings around the receiver's normal."""
+    """Irradiance per radiance, or solid angle [sr], of a sphere, by rings around the receiver's normal."""
     centre = sub(vector(shape["center"]), x)
     distance = sqrt(dot(centre, centre))
-    half, off = asin(mpf(shape["radius"]) / distance), acos(dot(centre, n) / distance)
+    half = asin(mpf(shape["radius"]) / distance)
+    if n is None:
+        return quad(lambda angle: 2 * pi * sin(angle), [0, half])
+    off = acos(dot(centre, n) / distance)
     whole = max(mpf(0), half - off)
     low, high = max(off - half, half - off), min(off + half, pi / 2)
     full = pi * sin(min(whole, pi / 2)) ** 2
