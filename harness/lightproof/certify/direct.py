@@ -24,6 +24,7 @@ from lightproof.certify import (
     provenance,
     shadows,
     skies,
+    skies_curved,
     unblocked,
 )
 from lightproof.certify.balls import CannotCertify, Element, Point, dot, exact, plus, point, times
@@ -32,7 +33,7 @@ from lightproof.certify.planes import Frame, Plane, Region
 from lightproof.certify.provenance import Provenance
 from lightproof.scene import AreaLight, Film, PlaneFilm, PointsFilm, Scene, Surface
 
-FIELDS: tuple[ModuleType, ...] = (curved, shadows, hard_shadows, skies, unblocked)
+FIELDS: tuple[ModuleType, ...] = (curved, shadows, hard_shadows, skies, skies_curved, unblocked)
 A_LITTLE = exact(2.0**-100)
 ROUNDING = exact(1e-15)  # of a corner's coordinates: how far above a plane a corner counts as lying on it
 
@@ -145,12 +146,13 @@ def _check_overlaps(scene_: Scene) -> None:
 
 
 def _check_contact(scene_: Scene, x: Point, receiver: Plane) -> None:
-    """A receiver may lie on polygons, where there are no other shapes or lights. Raises CannotCertify."""
+    """A receiver may lie on polygons, where there are no other shapes, nor lights but skies. Raises CannotCertify."""
     things = [thing for thing in (*scene_.lights, *scene_.surfaces) if isinstance(thing, AreaLight | Surface)]
-    flat = len(things) == len(scene_.lights) + len(scene_.surfaces) and all(map(_is_polygon, things))
+    flat = all(map(_is_polygon, things)) and all(isinstance(light, AreaLight | skies.Sky) for light in scene_.lights)
     for thing in things:
         if not flat and not lies_on(thing.shape, receiver) and contact.touches(thing.shape, x, receiver.normal):
-            raise CannotCertify(f"a receiver lies on '{thing.id}'; that is covered where all lights and surfaces are polygons")
+            raise CannotCertify(f"a receiver lies on '{thing.id}'; that is covered where all lights and surfaces are polygons"
+                                " or skies")
 
 
 def _is_polygon(thing: scene.Light | Surface) -> bool:

@@ -61,9 +61,12 @@ def overcast_sky(light: scene.OvercastSky, receiver: Plane) -> Formula:
 
 
 def sun(light: scene.SunDisc, receiver: Plane) -> Formula:
-    """A disc of half-angle a is as good as a sphere of radius sin(a) at distance 1."""
+    """A disc of half-angle a is as good as a sphere of radius sin(a) at distance 1; of 90 degrees, as half a sky."""
     radius = (arb.pi() * exact(light.half_angle) / 180).sin()
     height = -dot(unit(point(light.direction)), unit(receiver.normal))
+    if light.half_angle == 90:
+        value = arb.pi() * exact(light.radiance) * (1 + height) / 2
+        return lambda x: value
     above = _above(height, radius)
     value = exact(light.radiance) * _sphere(radius, arb(1), height, above) if above else arb(0)
     return lambda x: value

@@ -94,7 +94,7 @@ def _rounded(ball: arb) -> tuple[float, float]:
     ball = arb(ball)
     if not ball.is_finite():
         raise CannotCertify("the formula is singular at some receiver: in line with an edge, or on a light")
-    value = float(ball.mid())
+    value = float(ball.mid()) + 0.0  # 0, not -0
     if math.isinf(value):
         raise CannotCertify("a value exceeds what a binary64 can hold; give less light or smaller lengths")
     error = (ball - exact(value)).abs_upper()

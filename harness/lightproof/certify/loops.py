@@ -1,11 +1,10 @@
-"""What lies in loops of great circles: sums and unions of them, solid angle, and the second moments that a sky needs.
+"""What lies in loops of great circles: unions, solid angle, and the second moments that a sky needs.
 
-Regions of directions are Counters: convex loops with whole numbers whose indicator functions add up to the region's.
+A region of directions is a list of convex loops that share nothing.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from flint import arb
@@ -13,52 +12,44 @@ from flint import arb
 from lightproof.certify.balls import Ball, Point, Vector, angle, cross, dot, minus, root, times
 from lightproof.certify.contour import Contour
 from lightproof.certify.planes import Plane
-from lightproof.certify.polygon import Loop, Parts, clip, intersection, visible
+from lightproof.certify.polygon import Loop, clip, intersection, loop, visible_pieces
 
-Region = Counter[Loop]
-
-
-def shadow(blockers: Iterable[Parts], receiver: Point) -> Region:
-    """The directions in which a receiver sees any of some polygons."""
-    seen: Region = Counter()
-    before: list[Parts] = []
-    for blocker in blockers:
-        for part, count in visible(blocker, before, receiver).items():
-            seen[part] += count
-        before.append(blocker)
-    return _tidy(seen)
+Convex = tuple[Point, ...]  # corners of a convex polygon
+Region = list[Loop]
 
 
-def cut(polygon: Parts, plane: Plane) -> Parts:
-    """The part of a polygon in front of a plane."""
-    halves = ((sign, clip(corners, plane.normal, plane.offset)) for sign, corners in polygon)
-    return tuple((sign, corners) for sign, corners in halves if corners)
+def cut(tiles: Iterable[Convex], plane: Plane) -> list[Convex]:
+    """The parts of convex polygons in front of a plane."""
+    return [part for corners in tiles if (part := clip(corners, plane.normal, plane.offset))]
+
+
+def shadow(tiles: Iterable[Convex], receiver: Point) -> Region:
+    """The directions in which a receiver sees any of some convex polygons."""
+    region: Region = []
+    for corners in tiles:
+        region = union(region, [loop(corners, receiver)], receiver)
+    return region
+
+
+def overlays(tiles: Iterable[Convex], receiver: Point) -> list[tuple[int, Loop]]:
+    """Loops with signs that add up to the directions in which any of some convex polygons is seen. Their edges are parts of the
+    polygons' own, so that they hold for receivers nearby."""
+    terms: list[tuple[int, Loop]] = []
+    for corners in tiles:
+        whole = loop(corners, receiver)
+        terms += [(1, whole), *((-sign, intersection(part, whole, receiver)) for sign, part in terms)]
+        terms = [(sign, part) for sign, part in terms if part]
+    return terms
 
 
 def union(a: Region, b: Region, receiver: Point) -> Region:
     """The directions in one region or the other."""
-    both = Counter(a)
-    for region, sign in ((b, 1), (_overlap(a, b, receiver), -1)):
-        for part, count in region.items():
-            both[part] += sign * count
-    return _tidy(both)
-
-
-def _overlap(a: Region, b: Region, receiver: Point) -> Region:
-    shared: Region = Counter()
-    for first, count in a.items():
-        for second, other in b.items():
-            shared[intersection(first, second, receiver)] += count * other
-    return _tidy(shared)
-
-
-def _tidy(region: Region) -> Region:
-    return Counter({part: count for part, count in region.items() if part and count})
+    return [*a, *(piece for part in b for piece in visible_pieces(part, a, receiver))]
 
 
 def measure(region: Region, receiver: Point) -> Ball:
     """Solid angle [sr] of a region."""
-    return sum((count * solid_angle(part, receiver) for part, count in region.items()), arb(0))
+    return sum((solid_angle(part, receiver) for part in region), arb(0))
 
 
 def solid_angle(edges: Loop, receiver: Point) -> Ball:

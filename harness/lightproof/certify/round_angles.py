@@ -56,7 +56,7 @@ def _light(light: AreaLight | SunDisc, outline: Cap, around: Surroundings, norma
             raise CannotCertify(f"a polygon may overlap disk '{light.id}' as a receiver sees them, which is not covered")
         return disk_angle.solid_angle(light.shape, around.x, normal)
     hiding = [face for face in around.dark if isinstance(light, SunDisc) or _before(face, light, outline, around)]
-    taken = union(around.seen, shadow([face.parts for face in hiding], around.x), around.x)
+    taken = union(around.seen, shadow([tile for face in hiding for tile in face.tiles], around.x), around.x)
     whole = caps.whole(outline) if normal is None else caps.above(outline, normal)
     return rounded.solid_angle(whole) - _common(outline, taken, around)
 
@@ -84,7 +84,7 @@ def _before(face: Face, thing: AreaLight | Surface, outline: Cap, around: Surrou
 
 
 def _region(face: Face, around: Surroundings) -> Region:
-    return shadow([face.parts], around.x)
+    return shadow(face.tiles, around.x)
 
 
 def _overlap(cap: Cap, region: Region, around: Surroundings) -> bool:
@@ -93,5 +93,4 @@ def _overlap(cap: Cap, region: Region, around: Surroundings) -> bool:
 
 def _common(cap: Cap, region: Region, around: Surroundings) -> arb:
     """Solid angle of what a cap shares with a region."""
-    parts = [(caps.shared(cap, loop, around.x), count) for loop, count in region.items()]
-    return sum((count * rounded.solid_angle(part) for part, count in parts), arb(0))
+    return sum((rounded.solid_angle(caps.shared(cap, loop, around.x)) for loop in region), arb(0))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -10,16 +9,16 @@ from functools import cached_property
 from lightproof import geometry
 from lightproof.certify import planes
 from lightproof.certify.balls import CannotCertify, Point, cross, dot, minus, point
-from lightproof.certify.loops import Region, cut, union
+from lightproof.certify.loops import Convex, Region, cut, union
 from lightproof.certify.planes import Plane
-from lightproof.certify.polygon import Parts, convex_parts, visible
+from lightproof.certify.polygon import convex_parts, loop, visible_pieces
 
 
 @dataclass(frozen=True)
 class Face:
-    """A polygon and its plane, whose front is towards the receiver; `bright` where that is the front of a light."""
+    """A polygon, in convex tiles, and its plane, whose front is towards the receiver; `bright` where that is a light's front."""
 
-    parts: Parts
+    tiles: tuple[Convex, ...]
     plane: Plane
     bright: bool
 
@@ -27,11 +26,11 @@ class Face:
 def face(shape: geometry.Polygon, x: Point, light: bool) -> Face | None:
     """A polygon as a receiver sees it; None where it is seen edge-on. Raises CannotCertify for a receiver on it."""
     corners = tuple(map(point, shape.vertices))
-    parts, plane = convex_parts(corners), planes.of(corners)
+    tiles, plane = [part for _, part in convex_parts(corners)], planes.of(corners)
     height = plane.height(x)
     if height:
-        return Face(parts, plane if height > 0 else plane.turned, light and height > 0)
-    if any(_holds(corners, plane.normal, x) for _, corners in parts):
+        return Face(tuple(tiles), plane if height > 0 else plane.turned, light and height > 0)
+    if any(_holds(corners, plane.normal, x) for corners in tiles):
         raise CannotCertify("a receiver lies on a polygon, from where a solid angle has no one value")
     return None
 
@@ -51,7 +50,7 @@ class Surroundings:
 
     def above(self, horizon: Plane) -> Surroundings:
         """What is in front of a plane."""
-        return replace(self, faces=tuple(replace(face, parts=cut(face.parts, horizon)) for face in self.faces))
+        return replace(self, faces=tuple(replace(face, tiles=tuple(cut(face.tiles, horizon))) for face in self.faces))
 
     @property
     def bright(self) -> tuple[Face, ...]:
@@ -74,8 +73,9 @@ class Surroundings:
         return self._first(self.dark, self.bright)
 
     def _first(self, faces: Iterable[Face], hiders: Iterable[Face]) -> Region:
-        region: Region = Counter()
+        region: Region = []
         for face in faces:
-            nearer = [parts for hider in hiders if (parts := cut(hider.parts, face.plane))]
-            region = union(region, visible(face.parts, nearer, self.x), self.x)
+            nearer = [loop(tile, self.x) for hider in hiders for tile in cut(hider.tiles, face.plane)]
+            seen = [piece for tile in face.tiles for piece in visible_pieces(loop(tile, self.x), nearer, self.x)]
+            region = union(region, seen, self.x)
         return region
