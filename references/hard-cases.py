@@ -256,7 +256,11 @@ def cross(a, b):
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
+def base(name):
+    """The base case of a scene."""
+    scene = tomllib.loads((Path(__file__).resolve().parents[1] / f"scenes/{name}.toml").read_text(encoding="utf-8"))
+    return dict(enumerate(values(scene, range(len(scene["film"]["positions"])))))
+
+
 if __name__ == "__main__":
-    for name in SCENES:
-        scene = tomllib.loads((Path(__file__).resolve().parents[1] / f"scenes/{name}.toml").read_text(encoding="utf-8"))
-        print(json.dumps({name: dict(enumerate(values(scene, range(len(scene["film"]["positions"])))))}))
+    print(json.dumps({name: base(name) for name in SCENES}))
