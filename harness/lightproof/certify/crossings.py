@@ -69,7 +69,7 @@ class Wave:
         while parts:
             if len(parts) > MOST_PARTS:
                 raise Undecided("the rims of two disks coincide as a receiver sees them")
-            part = parts.pop()
+            part = parts.pop(0)
             rest = self._step(part)
             if not rest.overlaps(part):
                 continue
