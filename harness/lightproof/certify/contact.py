@@ -15,16 +15,16 @@ from lightproof.certify.polygon import area_vector, clip, convex_parts
 Convex = tuple[Point, ...]
 
 
-def touches(shape: geometry.Shape, x: Point, normal: Point) -> bool:
-    """Whether x lies on a shape and leaves it along `normal`: what it sees then depends on the side it comes from."""
+def touches(shape: geometry.Shape, x: Point, normal: Point | None) -> bool:
+    """Whether x lies on a shape and leaves it along `normal`, or any way: what it sees then depends on the side it comes from."""
     match shape:
         case geometry.Polygon():
             parts = convex_parts([point(corner) for corner in shape.vertices])
             return any(_leaves(part, x, normal) for _, part in parts)
         case geometry.Disk():
             axis, ray = point(shape.normal), minus(x, point(shape.center))
-            tilted = dot(axis, normal) != 0 and any(cross(axis, normal))
-            return bool(tilted and dot(axis, ray) == 0 and dot(ray, ray) <= exact(shape.radius) ** 2)
+            level = normal is not None and (dot(axis, normal) == 0 or not any(cross(axis, normal)))
+            return bool(not level and dot(axis, ray) == 0 and dot(ray, ray) <= exact(shape.radius) ** 2)
         case geometry.Cylinder():
             return _on_cylinder(shape, x)
     ray = minus(x, point(shape.center))
@@ -56,10 +56,10 @@ def _common(part: Convex, cutter: Convex) -> bool:
     return bool(part)
 
 
-def _leaves(convex: Convex, x: Point, normal: Point) -> bool:
-    """Whether x lies on a convex polygon, its edges included, and `normal` leads out of its plane."""
+def _leaves(convex: Convex, x: Point, normal: Point | None) -> bool:
+    """Whether x lies on a convex polygon, its edges included, and `normal`, if any, leads out of its plane."""
     front = area_vector(convex)
-    if dot(front, minus(x, convex[0])) != 0 or dot(front, normal) == 0:
+    if dot(front, minus(x, convex[0])) != 0 or (normal is not None and dot(front, normal) == 0):
         return False
     return all(dot(front, cross(minus(end, start), minus(x, start))) >= 0 for start, end in _edges(convex))
 

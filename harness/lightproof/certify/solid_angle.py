@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from flint import arb, fmpq
 
 from lightproof import geometry, scene
-from lightproof.certify import provenance, round_angles
+from lightproof.certify import contact, provenance, round_angles
 from lightproof.certify.balls import CannotCertify, Element, Point, dot, point, root
 from lightproof.certify.loops import measure
 from lightproof.certify.planes import Plane
@@ -58,6 +58,9 @@ def solve(scene_: Scene) -> Element:
 
 
 def _at(scene_: Scene, x: Point, normal: Point | None) -> arb:
+    for thing in filter(_is_round, (*scene_.lights, *scene_.surfaces)):
+        if contact.touches(thing.shape, x, normal):
+            raise CannotCertify(f"a receiver lies on '{thing.id}', from where a solid angle has no one value")
     around = _polygons(scene_, x)
     if normal is not None:
         around = around.above(Plane(normal, dot(normal, x)))
