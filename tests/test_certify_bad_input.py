@@ -173,12 +173,22 @@ def test_receivers_that_lie_on_something_see_the_limit(name, normal):
     assert here == pytest.approx(there, abs=1e-7)
 
 
+@pytest.mark.parametrize("normal", [(0.75, 0.25, 1), (-0.5, -1, 0.25)])
+@pytest.mark.parametrize("sky", [{"radiance": 1}, {"sky": "cie-overcast", "zenith_radiance": 1}], ids=["uniform", "overcast"])
+def test_under_a_sky_too(sky, normal):
+    """A receiver on a sheet that leans over it: the sky beyond, from its own side."""
+    light, sheet = {"kind": "environment", "id": "sky"} | sky, blocker([[0, 0, -1], [1, 0, -1], [1, 1, 1], [0, 1, 1]])
+    before = [number + A_LITTLE * component for number, component in zip((0.5, 0.5, 0), normal, strict=True)]
+    here, there = (value([light], [sheet], at, normal) for at in ((0.5, 0.5, 0), before))
+    assert 0 < here == pytest.approx(there, abs=1e-7)
+
+
 @pytest.mark.parametrize(("lights", "surfaces", "position", "reason"), [
     ([lamp({"type": "disk", "center": [0, 0, 0], "normal": [0, 0, 1], "radius": 0.5})], [], (0.25, 0, 0), "lies on 'lamp'"),
     ([lamp({"type": "sphere", "center": [0, 0, -0.5], "radius": 0.5})], [], (0, 0, 0), "lies on 'lamp'"),
     ([lamp({"type": "sphere", "center": [0, 0, 0], "radius": 0.5})], [], (0, 0, 0.25), "inside a sphere light"),
-    ([{"kind": "environment", "id": "sky", "radiance": 1}], [blocker([[0, 0, -1], [1, 0, -1], [1, 1, 1], [0, 1, 1]])],
-     (0.5, 0.5, 0), "lies on 'blocker'"),
+    ([{"kind": "point", "id": "bulb", "position": [0, 0, 3], "intensity": 1}],
+     [blocker([[0, 0, -1], [1, 0, -1], [1, 1, 1], [0, 1, 1]])], (0.5, 0.5, 0), "lies on 'blocker'"),
     ([lamp(CEILING)], [blocker({"type": "cylinder", "base": [0, 0, -1], "axis": [1, 0, 1], "height": 3, "radius": 0.5})],
      (1, 0.5, 0), "lies on 'blocker'"),
     ([lamp(CEILING)], [blocker([[0.5, 0, 2], [2, 0, 2], [2, 1, 2]])], (0, 0, 0), "'lamp' and 'blocker' overlap in one plane"),
