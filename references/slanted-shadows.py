@@ -152,6 +152,7 @@ def recipe(x, light, shade, face):
             return light[which][None]
         if kind == "shade":
             ray = shade[which] - x
+            assert (ray @ face < 0).all()
             return x + ray * (((light[0] - x) @ face) / (ray @ face))[:, None]
         (k, (a, b)), (m, (c, d)) = which
         p, q, r, s = place((k, a)), place((k, b)), place((m, c)), place((m, d))
@@ -192,9 +193,9 @@ def at_point(film, element, light, blockers):
     face = cross(sub(light[1], light[0]), sub(light[2], light[0]))
     if dot(sub(x, light[0]), face) <= 0:
         return mpf(0)
-    total = lambert(light, x, n)
+    total, up = lambert(light, x, n), scale(unit(face), -1)
     for blocker in blockers:
-        low = in_front(in_front(blocker, add(x, scale(n, mpf("1e-15"))), n), light[0], face)
+        low = in_front(in_front(blocker, add(x, scale(up, mpf("1e-15"))), up), light[0], face)
         if low:
             total -= lambert(within(light, [onto(corner, x, light[0], face) for corner in low], face), x, n)
     return total
@@ -208,7 +209,8 @@ def onto(corner, x, on_light, face):
 
 def within(light, shade, face):
     """What two convex polygons of one plane share."""
-    way = 1 if dot(cross(sub(shade[1], shade[0]), sub(shade[2], shade[1])), face) > 0 else -1
+    spokes = [sub(corner, shade[0]) for corner in shade[1:]]
+    way = 1 if sum(dot(cross(a, b), face) for a, b in pairwise(spokes)) > 0 else -1
     for i, end in enumerate(shade):
         light = in_front(light, end, scale(cross(face, sub(end, shade[i - 1])), way))
     return light
