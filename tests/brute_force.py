@@ -19,7 +19,9 @@ def sphere_of_directions(rings):
 def first_seen(scene_, x, w):
     """(n,) The light or surface seen first from x in directions w (n, 3), and whether its front is; None where there is none."""
     things = [thing for thing in (*scene_.lights, *scene_.surfaces) if hasattr(thing, "shape")]
-    distances = np.array([distance(thing.shape, x, w) for thing in things]).reshape(len(things), -1)
+    if not things:
+        return np.full(len(w), None), np.zeros(len(w), bool)
+    distances = np.array([distance(thing.shape, x, w) for thing in things])
     nearest = distances.argmin(axis=0)
     front = np.array([w @ facing(thing.shape, x) < 0 for thing in things])
     seen = np.array([*things, None])[np.where(distances.min(axis=0) < np.inf, nearest, len(things))]

@@ -27,7 +27,7 @@ BALL = {"type": "sphere", "center": [0.9, 0.3, 0.8], "radius": 0.35}
 DISK = {"type": "disk", "center": [-0.5, 0.1, 0.7], "normal": [0.2, 0.1, 1], "radius": 0.4}
 CYLINDER = {"type": "cylinder", "base": [0.3, -0.9, 0.1], "axis": [0.1, 0, 1], "height": 1.2, "radius": 0.2}
 CARD = [[-0.3, 0.9, 0.2], [0.5, 0.9, 0.2], [0.5, 0.9, 0.9], [-0.3, 0.9, 0.9]]
-PLANE = {"kind": "plane", "quantity": "irradiance", "resolution": [2, 1]}
+PLANE = {"kind": "plane", "quantity": "irradiance", "resolution": [4, 4]}
 FILM = PLANE | {"origin": [-0.3, -0.4, 0], "u": [0.6, 0, 0], "v": [0, 0.5, 0]}
 SLANTED = PLANE | {"origin": [-0.3, -0.4, 0], "u": [0.6, 0, 0], "v": [0, 0.5, 0.1]}
 
@@ -93,14 +93,24 @@ def test_the_wall_a_receiver_stands_on():
 
 @pytest.mark.parametrize("light", [SKY, HALF, OVERCAST], ids=["whole", "half", "overcast"])
 def test_means_are_those_of_the_points(light):
-    """Two cells behind a card: the mean of 12 x 12 points by Gauss's rule."""
-    nodes, weights = np.polynomial.legendre.leggauss(12)
+    """A cell before a card: the mean of 8 x 8 points by Gauss's rule."""
+    nodes, weights = np.polynomial.legendre.leggauss(8)
     p, q = (1 + nodes) / 2, (1 + nodes) / 2
-    places = [(-0.3 + 0.3 * a, -0.4 + 0.5 * b, 0) for a in p for b in q]
+    places = [(-0.3 + 0.15 * a, -0.4 + 0.125 * b, 0) for a in p for b in q]
     film = {"kind": "points", "quantity": "irradiance", "positions": places, "normals": [[0, 0, 1]] * len(places)}
     points = certify(scene([light], film, [blocker(CARD)])).value
     mean = certify(scene([light], FILM, [blocker(CARD)]), [0]).value[0]
     assert mean == pytest.approx(float(points @ np.outer(weights, weights).ravel()) / 4, rel=1e-12)
+
+
+def test_means_where_two_shadows_meet():
+    """A card that shows past an edge of another: the mean of 12 x 12 places, to what its kinks leave."""
+    surfaces = [blocker(CARD), blocker([[-0.6, 0.5, 0.3], [0.1, 0.5, 0.2], [0.2, 0.7, 0.8]], "other")]
+    steps = (np.arange(12) + 0.5) / 12
+    places = [(-0.3 + 0.15 * a, -0.4 + 0.125 * b, 0) for a in steps for b in steps]
+    film = {"kind": "points", "quantity": "irradiance", "positions": places, "normals": [[0, 0, 1]] * len(places)}
+    points = certify(scene([SKY], film, surfaces)).value
+    assert certify(scene([SKY], FILM, surfaces), [0]).value[0] == pytest.approx(points.mean(), rel=2e-5)
 
 
 def test_a_film_beside_a_ball():

@@ -87,25 +87,20 @@ class _Screen:
     the receiver's."""
 
     receiver: Plane
-    polygons: tuple[tuple[Convex, ...], ...]
+    tiles: tuple[Convex, ...]
     level: bool
 
     @classmethod
     def of(cls, light: Sky, blockers: Sequence[geometry.Polygon], receiver: Plane) -> _Screen:
         """The part of the blockers that counts."""
-        tiles = ([part for _, part in convex_parts([point(corner) for corner in b.vertices])] for b in blockers)
-        above = (tuple(cut(polygon, receiver)) for polygon in tiles)
-        return cls(receiver, tuple(filter(None, above)), is_level(light, receiver))
+        polygons = [[point(corner) for corner in blocker.vertices] for blocker in blockers]
+        tiles = [part for corners in polygons for _, part in convex_parts(corners)]
+        return cls(receiver, tuple(cut(tiles, receiver)), is_level(light, receiver))
 
     @property
     def normal(self) -> Vector:
         """Unit normal of the receivers."""
         return unit(self.receiver.normal)
-
-    @property
-    def tiles(self) -> list[Convex]:
-        """Of all polygons."""
-        return [tile for polygon in self.polygons for tile in polygon]
 
     @property
     def planes(self) -> set[Plane]:
