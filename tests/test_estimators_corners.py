@@ -97,3 +97,10 @@ def test_points_of_a_wall_that_face_elsewhere_have_no_closed_form():
     for normal, accepted in (((-1, 0, 0), True), ((-1, 0, 1), False), ((1, 0, 0), False)):
         inside = scene([], at_points([[1, 0, 0]], normal), (globe,), "all")
         assert ("analytic" in able(inside)) is accepted
+
+
+def test_what_reflects_still_shades_the_floor():
+    """A camera over a floor in the shadow of a square that reflects too: analytic shows soft-shadow-picture's umbra, black."""
+    picture, umbra = suite.default().scene("soft-shadow-picture"), 9 * 16 + 7
+    assert suite.default().reference(picture).value[umbra] == 0
+    assert method("analytic", picture).render(64, 0).film[umbra] < 1e-12

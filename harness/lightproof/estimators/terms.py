@@ -68,10 +68,10 @@ def soft(scene: Scene, things: list[SOLID], sheet: Sheet | None) -> Iterator[Ter
 
 
 def stands_before(scene: Scene, shape: Polygon, lamp: Polygon) -> bool:
-    """Whether any of a polygon lies in front of a light's plane and of the receivers', where they have one."""
-    corners = np.array(shape.vertices)
-    planes = [(np.array(lamp.vertices[0]), lamp.normal), *filter(None, receiving_planes(scene))]
-    return all(len(above(corners, normal, point)) for point, normal in planes)
+    """Whether any of a polygon lies in front of a light's plane and of one in which there are receivers, where they have any."""
+    corners, planes = np.array(shape.vertices), receiving_planes(scene)
+    receives = any(plane is None or len(above(corners, plane[1], plane[0])) for plane in planes)
+    return receives and len(above(corners, lamp.normal, np.array(lamp.vertices[0]))) > 0
 
 
 def farthest(scene: Scene) -> float:
