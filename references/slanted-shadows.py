@@ -50,9 +50,19 @@ def over_cell(film, element, light, blockers):
     shades = [shade for blocker in blockers if len(shade := between(np.array(blocker), origin, normal, light[0], face))]
     assert len(shades) <= 1 and all((light - origin) @ normal > 0)
     total, area = 0.0, 1 / (columns * rows)
-    for piece in pieces(corners, [plane for shade in shades for plane in sight_planes(light, shade)], origin, u, v):
+    cuts = [plane for shade in shades for plane in (*sight_planes(light, shade), *finer(origin + corners @ [u, v], shade))]
+    for piece in pieces(corners, cuts, origin, u, v):
         total += over_piece(piece, light, shades, origin, u, v, normal)
     return total / area
+
+
+def finer(cell, shade):
+    """Planes that cut a cell (4, 3) in quarters along each side where an edge of a blocker is as near as the cell is wide."""
+    along = np.linspace(0, 1, 33)[:, None, None]
+    edges = (shade + along * (np.roll(shade, -1, axis=0) - shade)).reshape(-1, 1, 3)
+    sides = cell[1] - cell[0], cell[3] - cell[0]
+    if np.linalg.norm(edges - cell, axis=-1).min() < max(map(np.linalg.norm, sides)):
+        yield from ((cell[0] + side * share, side) for side in sides for share in (0.25, 0.5, 0.75))
 
 
 def between(blocker, origin, normal, on_light, face):
