@@ -11,6 +11,7 @@ from lightproof.estimators.sheet import EVERYWHERE, Sheet
 from lightproof.estimators.soft_curves import MARGIN, edges
 from lightproof.geometry import Cylinder, Disk, Polygon, Shape, Sphere
 
+EDGE_ON = 1e-12  # sine of the angle between a ray and a plane that counts as none
 SIDES = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], float)
 
 
@@ -47,10 +48,14 @@ def curves(sheet: Sheet, rays: Rays, shapes: list[Shape]) -> list[np.ndarray]:
 
 
 def polygon(sheet: Sheet, rays: Rays, shape: Polygon) -> Iterator[np.ndarray]:
-    sides = edges(np.array(shape.vertices))
     yield plane(sheet, np.array(shape.vertices), shape.normal)
-    boxes = np.array([rays.box(sheet, side) for side in sides])
-    yield sheet.lines(np.cross(sides[:, 1] - sides[:, 0], rays.travel(sides[:, 0])), sides[:, 0], boxes)
+    yield straight(sheet, rays, edges(np.array(shape.vertices)))
+
+
+def straight(sheet: Sheet, rays: Rays, sides: np.ndarray) -> np.ndarray:
+    """The shadows of edges (m, 2, 3)."""
+    boxes = np.array([rays.box(sheet, side) for side in sides]).reshape(-1, 4)
+    return sheet.lines(np.cross(sides[:, 1] - sides[:, 0], rays.travel(sides[:, 0])), sides[:, 0], boxes)
 
 
 def plane(sheet: Sheet, corners: np.ndarray, normal: np.ndarray) -> np.ndarray:
@@ -72,7 +77,15 @@ def disk(sheet: Sheet, rays: Rays, shape: Disk) -> Iterator[np.ndarray]:
     t, b = geometry.tangents(normal)
     square = around(center, shape.radius * t, shape.radius * b)
     yield plane(sheet, np.stack([square[0], *square]), normal)
-    yield sheet.conics(rim(rays, center, normal, shape.radius), rays.box(sheet, square))
+    yield circle(sheet, rays, center, normal, shape.radius, rays.box(sheet, square))
+
+
+def circle(sheet: Sheet, rays: Rays, center: np.ndarray, normal: np.ndarray, radius: float, box: np.ndarray) -> np.ndarray:
+    """The shadow of a circle: a conic, or where the light lies in its plane a line."""
+    away = rays.travel(center)
+    if abs(away @ normal) <= EDGE_ON * np.linalg.norm(away):
+        return sheet.lines(normal[None], center[None], box[None])
+    return sheet.conics(rim(rays, center, normal, radius), box)
 
 
 def rim(rays: Rays, center: np.ndarray, normal: np.ndarray, radius: float) -> Callable[[np.ndarray], np.ndarray]:
@@ -96,25 +109,47 @@ def sphere(sheet: Sheet, rays: Rays, shape: Sphere) -> Iterator[np.ndarray]:
         return ((np.cross(d, origin) ** 2).sum(axis=-1) - shape.radius**2 * (d**2).sum(axis=-1))[None]
 
     yield sheet.conics(tangent, rays.box(sheet, cube))
-    yield sheet.conics(lambda x: (((x - center) ** 2).sum(axis=-1) - shape.radius**2)[None])
+    if abs(sheet.height(center)) < shape.radius:
+        yield sheet.conics(lambda x: (((x - center) ** 2).sum(axis=-1) - shape.radius**2)[None])
+        yield polar(sheet, rays, center, shape.radius)
+
+
+def polar(sheet: Sheet, rays: Rays, center: np.ndarray, radius: float) -> np.ndarray:
+    """The line through the two points of the film at which a ball's shadow touches the ball."""
+    if rays.beam:
+        return sheet.lines(rays.source[None], center[None])
+    axis = rays.source - center
+    return sheet.lines(axis[None], (center + axis * (radius**2 / (axis @ axis)))[None])
 
 
 def cylinder(sheet: Sheet, rays: Rays, shape: Cylinder) -> Iterator[np.ndarray]:
     base, axis = np.array(shape.base), geometry.unit(np.array(shape.axis))
-    t, b = (shape.radius * side for side in geometry.tangents(axis))
     half = axis * shape.height / 2
-    box = rays.box(sheet, around(base + half, t, b, half))
-
-    def flank(x: np.ndarray) -> np.ndarray:
-        """Zero where the ray touches the side, however long."""
-        d = rays.travel(x)
-        origin = x - base if rays.beam else rays.source - base
-        return ((np.cross(d, origin) @ axis) ** 2 - shape.radius**2 * (np.cross(d, axis) ** 2).sum(axis=-1))[None]
-
+    box = rays.box(sheet, around(base + half, *(shape.radius * side for side in geometry.tangents(axis)), half))
     for center in (base, base + axis * shape.height):
-        yield sheet.conics(rim(rays, center, axis, shape.radius), box)
-    yield sheet.conics(flank, box)
+        yield circle(sheet, rays, center, axis, shape.radius, box)
+    ends = np.array([base, base + axis * shape.height]) + flanks(rays, base, axis, shape.radius)[:, None]
+    yield straight(sheet, rays, np.array([standing(sheet, *end) for end in ends]).reshape(-1, 2, 3))
     yield sheet.conics(lambda x: ((np.cross(x - base, axis) ** 2).sum(axis=-1) - shape.radius**2)[None])
+
+
+def flanks(rays: Rays, base: np.ndarray, axis: np.ndarray, radius: float) -> np.ndarray:
+    """From the axis, the two lines (2, 3) along which rays touch a cylinder; (0, 3) from a point within it."""
+    away = rays.source if rays.beam else rays.source - base
+    away = away - (away @ axis) * axis
+    distance = np.linalg.norm(away)
+    if distance <= (0 if rays.beam else radius):
+        return np.zeros((0, 3))
+    along, aside = away / distance, np.cross(axis, away / distance)
+    cosine = 0.0 if rays.beam else radius / distance
+    return radius * np.array([cosine * along + side * np.sqrt(1 - cosine**2) * aside for side in (-1, 1)])
+
+
+def standing(sheet: Sheet, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The part (2, 3) of a segment above the film, or all of it where none is."""
+    first, last = sheet.height(np.array([a, b]))
+    foot = a + (b - a) * first / (first - last) if first * last < 0 else None
+    return np.array([a, b] if foot is None else [foot, b] if first < 0 else [a, foot])
 
 
 OUTLINES: dict[type, Callable] = {Polygon: polygon, Disk: disk, Sphere: sphere, Cylinder: cylinder}
