@@ -56,6 +56,9 @@ SCENES = {
     "sphere beside and behind": ([glow(BALL), lamp(WALL[::-1])], [blocker(ELL)]),
     "sphere before": ([lamp(ROOF)], [solid(SMALL), blocker(WALL)]),
     "disk": ([glow(DISK), lamp(WALL[::-1])], []),
+    "sky with balls and a card": (
+        [SKY, glow(BALL | {"center": [2.5, -0.6, 0.7]}), lamp(WALL[::-1])], [solid(SMALL), blocker(ROOF)]),
+    "sky with a disk turned away": ([SKY, SUN, glow(DISK | {"normal": [-0.5, -0.1, 0.7]})], [blocker(WALL)]),
 }
 
 
@@ -129,7 +132,7 @@ REFUSED = {
         [glow({"type": "sphere", "center": [x, 0, 4], "radius": 0.5}, name) for x, name in ((-0.5, "one"), (0.5, "two"))], [],
         (0, 0, 0)),
     "is a cylinder": ([glow({"type": "cylinder", "base": [1, 1, 1], "axis": [0, 0, 1], "height": 1.0, "radius": 0.2})], [], X),
-    "round is in front of a sky": ([SKY], [solid(BALL)], X),
+    "round, together with half a sky": ([HALF], [solid(BALL)], X),
     "plane of a polygon cuts sphere 'glow'": (
         [glow(BALL)], [blocker([[-3, -3, 2.4], [9, -3, 2.4], [9, 9, 2.4], [-3, 9, 2.4]])], X),
 }

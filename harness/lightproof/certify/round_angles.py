@@ -6,14 +6,15 @@ disk from the polygons too.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import combinations
 
 from flint import arb
 
 from lightproof import geometry
 from lightproof.certify import caps, disk_angle, rounded
-from lightproof.certify.balls import CannotCertify, Point, dot, exact, point
+from lightproof.certify.balls import CannotCertify, Point, dot, exact, minus, point
 from lightproof.certify.caps import Cap
 from lightproof.certify.loops import Region, shadow, union
 from lightproof.certify.surroundings import Face, Surroundings
@@ -22,8 +23,21 @@ from lightproof.scene import AreaLight, SunDisc, Surface
 Round = AreaLight | SunDisc | Surface
 
 
-def beside(around: Surroundings, normal: Point | None, lights: Sequence[SunDisc | AreaLight], screens: Sequence[Surface]) -> arb:
-    """What round lights add to the polygons seen, less what round surfaces hide of these. Raises CannotCertify."""
+def sides(things: Iterable[AreaLight | Surface], x: Point) -> tuple[list[Round], list[Round]]:
+    """Round things that show a light's front to a receiver, and others; disks turned to it."""
+    bright, dark = [], []
+    for thing in things:
+        front = not _is_disk(thing) or dot(point(thing.shape.normal), minus(x, point(thing.shape.center))) >= 0
+        (bright if front and isinstance(thing, AreaLight) else dark).append(thing if front else _turned(thing))
+    return bright, dark
+
+
+def _turned(thing: AreaLight | Surface) -> AreaLight | Surface:
+    return replace(thing, shape=replace(thing.shape, normal=tuple(-component for component in thing.shape.normal)))
+
+
+def beside(around: Surroundings, normal: Point | None, lights: Sequence[Round], screens: Sequence[Round]) -> arb:
+    """What round lights add to the polygons seen, less what round screens hide of these. Raises CannotCertify."""
     if len(lights) == 1 and not screens and not around.faces and _is_disk(lights[0]):
         return disk_angle.solid_angle(lights[0].shape, around.x, normal)
     outlines = [(thing, _outline(thing, around)) for thing in (*lights, *screens)]
@@ -49,7 +63,7 @@ def _outline(thing: Round, around: Surroundings) -> Cap:
     raise CannotCertify(f"'{thing.id}' is a {type(thing.shape).__name__.lower()}, which a film of solid angle does not cover")
 
 
-def _light(light: AreaLight | SunDisc, outline: Cap, around: Surroundings, normal: Point | None) -> arb:
+def _light(light: Round, outline: Cap, around: Surroundings, normal: Point | None) -> arb:
     """What a light shows beside all polygons that show already, or hide it."""
     if _is_disk(light):
         if any(_overlap(outline, _region(face, around), around) for face in around.faces):
@@ -61,7 +75,7 @@ def _light(light: AreaLight | SunDisc, outline: Cap, around: Surroundings, norma
     return rounded.solid_angle(whole) - _common(outline, taken, around)
 
 
-def _hidden(screen: Surface, outline: Cap, around: Surroundings) -> arb:
+def _hidden(screen: Round, outline: Cap, around: Surroundings) -> arb:
     """What a round surface hides of the polygons that are seen."""
     if not any(_overlap(outline, _region(face, around), around) for face in around.bright):
         return arb(0)
@@ -73,7 +87,7 @@ def _hidden(screen: Surface, outline: Cap, around: Surroundings) -> arb:
     return _common(outline, around.seen, around) if nearer == {True} else arb(0)
 
 
-def _before(face: Face, thing: AreaLight | Surface, outline: Cap, around: Surroundings) -> bool:
+def _before(face: Face, thing: Round, outline: Cap, around: Surroundings) -> bool:
     """Whether a polygon is nearer than a sphere where both are seen, and not behind it. Raises CannotCertify."""
     if not _overlap(outline, _region(face, around), around):
         return False

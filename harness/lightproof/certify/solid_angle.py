@@ -5,7 +5,7 @@ A light counts where its front is seen, whatever its radiance; its back, like a 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 from flint import arb, fmpq
 
@@ -58,18 +58,28 @@ def solve(scene_: Scene) -> Element:
 
 
 def _at(scene_: Scene, x: Point, normal: Point | None) -> arb:
-    for thing in filter(_is_round, (*scene_.lights, *scene_.surfaces)):
-        if contact.touches(thing.shape, x, normal):
-            raise CannotCertify(f"a receiver lies on '{thing.id}', from where a solid angle has no one value")
+    rounds = [thing for thing in (*scene_.lights, *scene_.surfaces) if _is_round(thing)]
+    _check_contact(rounds, x, normal)
     around = _polygons(scene_, x)
     if normal is not None:
         around = around.above(Plane(normal, dot(normal, x)))
     skies = [light for light in scene_.lights if isinstance(light, Environment | OvercastSky)]
-    lights = [light for light in scene_.lights if isinstance(light, SunDisc) or _is_round(light)]
-    screens = [surface for surface in scene_.surfaces if _is_round(surface)]
+    suns = [light for light in scene_.lights if isinstance(light, SunDisc)]
+    bright, dark = round_angles.sides(rounds, x)
     if not skies:
-        return measure(around.seen, x) + round_angles.beside(around, normal, lights, screens)
-    return _under(skies, around, normal, [*lights, *screens])
+        return measure(around.seen, x) + round_angles.beside(around, normal, [*suns, *bright], dark)
+    if any(getattr(sky, "extent", "upper") == "sphere" for sky in skies):
+        hidden = measure(around.hidden, x) + round_angles.beside(around.swapped, normal, dark, bright)
+        return (4 if normal is None else 2) * arb.pi() - hidden
+    if suns or bright or dark:
+        raise CannotCertify("a sun, or something round, together with half a sky is not covered in a film of solid angle")
+    return _under_half(around, normal)
+
+
+def _check_contact(rounds: Iterable[AreaLight | Surface], x: Point, normal: Point | None) -> None:
+    for thing in rounds:
+        if contact.touches(thing.shape, x, normal):
+            raise CannotCertify(f"a receiver lies on '{thing.id}', from where a solid angle has no one value")
 
 
 def _polygons(scene_: Scene, x: Point) -> Surroundings:
@@ -82,14 +92,8 @@ def _is_round(thing: scene.Light | Surface) -> bool:
     return hasattr(thing, "shape") and not isinstance(thing.shape, geometry.Polygon)
 
 
-def _under(skies: Sequence[Environment | OvercastSky], around: Surroundings, normal: Point | None, rounds: Sequence) -> arb:
-    """The sky, less what hides it, and lights in front of what is not sky."""
-    if any(not isinstance(thing, SunDisc) for thing in rounds):
-        raise CannotCertify("something round is in front of a sky; in a film of solid angle only polygons are covered there")
-    if any(getattr(sky, "extent", "upper") == "sphere" for sky in skies):
-        return (4 if normal is None else 2) * arb.pi() - measure(around.hidden, around.x)
-    if rounds:
-        raise CannotCertify("a sun and half a sky together are not covered in a film of solid angle")
+def _under_half(around: Surroundings, normal: Point | None) -> arb:
+    """The upper half of the sky, less what hides it, and lights in front of what is not sky."""
     level = Plane(UP, around.x[2])
     above, below = around.above(level), around.above(level.turned)
     return _upper(normal) - measure(above.hidden, around.x) + measure(below.seen, around.x)

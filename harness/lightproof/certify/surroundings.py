@@ -53,6 +53,11 @@ class Surroundings:
         return replace(self, faces=tuple(replace(face, tiles=tuple(cut(face.tiles, horizon))) for face in self.faces))
 
     @property
+    def swapped(self) -> Surroundings:
+        """Lit what is dark, and dark what is lit."""
+        return replace(self, faces=tuple(replace(face, bright=not face.bright) for face in self.faces))
+
+    @property
     def bright(self) -> tuple[Face, ...]:
         """Lights that turn their front this way."""
         return tuple(face for face in self.faces if face.bright)
