@@ -16,7 +16,7 @@ from pathlib import Path
 from mpmath import atan, mp, mpc, mpf, pi, polyroots, sqrt
 from mpmath.calculus.quadrature import GaussLegendre
 
-SCENES = ("sphere-blocker",)
+SCENES = ()  # other scripts call it for their points
 mp.dps = 30
 RULE = GaussLegendre(mp).calc_nodes(4, mp.prec)  # 24 nodes and weights on [-1, 1]
 TINY = mpf(10) ** -24  # metres: no light between rows as close as this
@@ -251,6 +251,5 @@ def unit(a):
 
 
 if __name__ == "__main__":
-    for name in SCENES:
-        scene = tomllib.loads((Path(__file__).resolve().parents[1] / f"scenes/{name}.toml").read_text(encoding="utf-8"))
-        print(json.dumps({name: {"base": dict(enumerate(values(scene, range(len(scene["film"]["positions"])))))}}))
+    scene = tomllib.loads((Path(__file__).resolve().parents[1] / "scenes/sphere-blocker.toml").read_text(encoding="utf-8"))
+    print(json.dumps({"base": dict(enumerate(values(scene, range(len(scene["film"]["positions"])))))}))

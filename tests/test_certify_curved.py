@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lightproof import geometry, scene_file
+from lightproof.certify import cubature, many_outlines, parting
 from lightproof.certify.arrangement import irradiance
 from lightproof.certify.balls import CannotCertify, point, unit
 from lightproof.certify.crossings import Wave
@@ -238,3 +239,61 @@ def test_the_contour_around_a_sphere():
     with ctx.workprec(128):
         seen = irradiance(seen_sphere(point((0, 0, 2.0)), point((0.5,) * 3)[0]), unit(point((0, 0, 1.0))))
         assert seen.overlaps(arb.pi() / 16) and seen.rad() < 1e-30
+
+
+SHADOWS = {
+    "ball before a square": (polygon(SQUARE), [ball([0.1, -0.1, 0.6], 0.25)]),
+    "disk before a disk": (LEANING, [disk([0.05, 0.1, 0.5], [0.4, 0.3, 1], 0.2)]),
+    "parallel disks": (disk([0.1, 0, 1.1], [0, 0, -1], 0.4), [disk([0.05, 0.1, 0.5], UP, 0.2)]),
+    "ball before a ball": (ball([0.3, 0, 0.9], 0.4), [ball([0, 0.1, 0.3], 0.15)]),
+    "a concave polygon and a ball": (LEANING, [polygon([[-0.3, -0.3, 0.4], [0.3, -0.3, 0.4], [0, 0, 0.4], [0, 0.3, 0.4]]),
+                                               ball([0.3, 0, 0.3], 0.1)]),
+}
+
+
+@pytest.mark.parametrize("name", SHADOWS)
+def test_many_receivers_at_once(name):
+    """Twenty receivers on a floor, in binary64 and proven: equal to 13 digits of the largest."""
+    light, blockers = SHADOWS[name]
+    positions = np.random.default_rng(2).uniform(-1, 1, (20, 3)) * [1, 1, 0]
+    own = floor(light, blockers, (1, 1))
+    lamp, *before = (parting.solid(item.shape) for item in (*own.lights, *own.surfaces))
+    at_once = many_outlines.irradiance(lamp, before, positions, np.array([0, 0, 1.0]))
+    assert at_once == pytest.approx([value(light, blockers, at) for at in positions.tolist()], abs=1e-13 * at_once.max())
+
+
+def floor(light, blockers, resolution):
+    """A scene with a film of 0.8 m x 0.6 m."""
+    film = {"kind": "plane", "quantity": "irradiance", "origin": [-0.3, -0.2, 0], "u": [0.8, 0, 0], "v": [0, 0.6, 0],
+            "resolution": list(resolution)}
+    surfaces = [{"id": f"blocker-{i}", "reflectance": 0, "shape": shape} for i, shape in enumerate(blockers)]
+    return scene_file.from_table({"title": "a test", "max_bounces": 0, "tolerance": 0.005, "film": film, "surface": surfaces,
+                                  "light": [{"kind": "area", "id": "lamp", "radiance": 1.0, "shape": light}]}, "test")
+
+
+@pytest.mark.parametrize("name", ["ball before a square", "parallel disks"])
+def test_means_add_up(name):
+    """The mean over a film of one element and over the same film of 3 x 2: equal within what they state, called estimates."""
+    one, six = (certify(floor(*SHADOWS[name], resolution)) for resolution in ((1, 1), (3, 2)))
+    assert one.kind == six.kind == "quadrature"
+    assert one.uncertainty[0] < 1e-6 * one.value[0]
+    assert one.value[0] == pytest.approx(six.value.mean(), rel=0, abs=one.uncertainty[0] + six.uncertainty.mean())
+
+
+def test_means_behind_a_tube_are_refused():
+    """A cylinder before a light, over a film."""
+    with pytest.raises(CannotCertify, match=r"cylinder.*at points only"):
+        certify(floor(polygon(SQUARE), [TUBE], (1, 1)))
+
+
+def test_means_of_a_light_that_the_film_cuts_are_refused():
+    """A tube through the film's plane, alone."""
+    with pytest.raises(CannotCertify, match="along curves of the film"):
+        certify(floor(tube([0.7, 0, -0.5], [0.1, 0, 1], 1, 0.1), [], (1, 1)))
+
+
+def test_a_kink_is_estimated_honestly():
+    """|s - 0.3|^(3/2) over the square: within the uncertainty, which is as small as was asked for, or nearly."""
+    total, uncertainty = cubature.integral(lambda s, t: np.abs(s - 0.3) ** 1.5, 1e-8)
+    expected = 2 * (1.3**2.5 + 0.7**2.5) / 2.5
+    assert abs(total - expected) < uncertainty < 1e-6

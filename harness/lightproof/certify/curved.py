@@ -1,4 +1,4 @@
-"""Disks, spheres and cylinders as lights and as what stands before lights: values at points."""
+"""Disks, spheres and cylinders as lights and as what stands before lights: proven at points, means estimated."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from lightproof import geometry, scene
 from lightproof.certify import outlines, parting, provenance
 from lightproof.certify.arrangement import EVERYTHING, irradiance, visible
 from lightproof.certify.balls import CannotCertify, Point, exact, unit
+from lightproof.certify.curved_means import Means
 from lightproof.certify.emitters import Formula, dark
 from lightproof.certify.field import Field, Shape
 from lightproof.certify.parting import Solid
@@ -41,7 +42,7 @@ def field(light: AreaLight, blockers: list[Shape], receiver: Plane) -> Field:
         seen = visible(outlines.lit(lamp, x), upper, before)
         return lambda y: exact(light.radiance) * irradiance(seen, normal)
 
-    return Field(near, None)
+    return Field(near, None, Means(lamp, between, light.radiance, near).flux)
 
 
 def _between(lamp: Solid, blockers: list[Shape], receiver: Plane) -> list[Solid]:

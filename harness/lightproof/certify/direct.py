@@ -44,14 +44,20 @@ def covers(scene_: Scene) -> bool:
 
 
 def kind(scene_: Scene) -> str:
-    """Points and smooth means are proven."""
-    return "enclosure"
+    """Points and smooth means are proven; means behind curves are estimated."""
+    estimated = isinstance(scene_.film, PlaneFilm) and any(_module(*pair) is curved for pair in _with_blockers(scene_))
+    return "quadrature" if estimated else "enclosure"
 
 
 def provenance_of(scene_: Scene) -> Provenance:
     """That of each light, joined."""
-    before = [(light, _blockers(scene_, light, _corners(scene_.film))) for light in scene_.lights]
-    return provenance.joined(_module(light, blockers).provenance_of(light, blockers) for light, blockers in before)
+    pairs = _with_blockers(scene_)
+    return provenance.joined(_module(light, blockers).provenance_of(light, blockers) for light, blockers in pairs)
+
+
+def _with_blockers(scene_: Scene) -> list[tuple[scene.Light, list[Shape]]]:
+    """Each light, and what may stand between it and the film's receivers."""
+    return [(light, _blockers(scene_, light, _corners(scene_.film))) for light in scene_.lights]
 
 
 def fields(scene_: Scene, receiver: Plane, where: Sequence[Point] | None = None) -> list[Field]:
@@ -100,7 +106,7 @@ def mean_over(frame: Frame, lights: list[Field], region: Region) -> arb:
     """Mean irradiance over a convex region of a plane film. Raises CannotCertify."""
     others = [light for light in lights if light.flux is None]
     if any(light.events is None for light in others):
-        raise CannotCertify("the shadows of several blockers may meet on the film, in curves that are not covered")
+        raise CannotCertify("what is seen of a light changes along curves of the film; that is covered at points only")
     lines = {line for light in others for event in light.events if (line := frame.line(event))}
     total = sum((_flux(frame, others, part) for part in planes.cut(region, sorted(lines))), arb(0))
     total += sum((light.flux(frame, region) for light in lights if light.flux), arb(0))

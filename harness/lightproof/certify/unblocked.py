@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from lightproof import geometry, scene
 from lightproof.certify import curved, emitters, parting, provenance, tube, walls
@@ -60,7 +61,7 @@ def _round(light: AreaLight, receiver: Plane) -> Field:
     if parting.below(shape, receiver):
         return Field(lambda x: emitters.dark)
     if not parting.above(shape, receiver):
-        return curved.field(light, [], receiver)
+        return replace(curved.field(light, [], receiver), flux=None)
     return _disk(light, receiver) if isinstance(shape, geometry.Disk) else _tube(light, receiver)
 
 
