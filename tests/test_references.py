@@ -19,7 +19,7 @@ from lightproof.scene import PlaneFilm
 HOME = suite.default()
 FOLDER = HOME.root / "references"
 SCENES = {scene.name: scene for scene in HOME.scenes()}
-ROUNDING = 2e-15  # of a film's largest value, or where the tolerance is so of each: what binary64 sums of 10^5 terms may change with processor and library
+ROUNDING = 2e-15  # of a film's largest value (of each, where the tolerance is): what binary64 sums may change with library
 
 
 def sample(scene, reference):
