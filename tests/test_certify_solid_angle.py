@@ -58,6 +58,9 @@ SCENES = {
     "disk": ([glow(DISK), lamp(WALL[::-1])], []),
     "sky with balls and a card": (
         [SKY, glow(BALL | {"center": [2.5, -0.6, 0.7]}), lamp(WALL[::-1])], [solid(SMALL), blocker(ROOF)]),
+    "one ball before another": ([glow(BALL), glow({"type": "sphere", "center": [0.9, 0.4, 1.2], "radius": 0.1}, "small")], []),
+    "an eclipse": (
+        [SUN | {"half_angle": 8.0}, lamp(ROOF)], [solid({"type": "sphere", "center": [0.8, 0.4, 0.75], "radius": 0.2})]),
     "sky with a disk turned away": ([SKY, SUN, glow(DISK | {"normal": [-0.5, -0.1, 0.7]})], [blocker(WALL)]),
 }
 
@@ -127,7 +130,7 @@ REFUSED = {
     "lies on a polygon": ([lamp()], [], (0, 0, 1.3)),
     "inside a sphere, or on it": ([glow(BALL)], [], BALL["center"]),
     "may overlap disk 'glow'": ([glow(DISK), lamp([[-1, -1, 1.5], [-1, 1, 1.5], [2, 1, 1.5], [2, -1, 1.5]])], [], X),
-    "'glow' and 'other', which are round": ([glow(BALL), glow(BALL | {"radius": 0.3}, "other")], [], X),
+    "'glow' and 'other', which are round": ([glow(BALL), glow(BALL | {"center": [1.7, 0.9, 2.4]}, "other")], [], X),
     "touches an edge, a corner, the horizon or another rim": (
         [glow({"type": "sphere", "center": [x, 0, 4], "radius": 0.5}, name) for x, name in ((-0.5, "one"), (0.5, "two"))], [],
         (0, 0, 0)),

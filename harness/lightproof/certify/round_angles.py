@@ -40,12 +40,25 @@ def beside(around: Surroundings, normal: Point | None, lights: Sequence[Round], 
     """What round lights add to the polygons seen, less what round screens hide of these. Raises CannotCertify."""
     if len(lights) == 1 and not screens and not around.faces and _is_disk(lights[0]):
         return disk_angle.solid_angle(lights[0].shape, around.x, normal)
+    lights = [light for light in lights if not _is_covered(light, lights, screens, around)]
     outlines = [(thing, _outline(thing, around)) for thing in (*lights, *screens)]
     for (one, first), (other, second) in combinations(outlines, 2):
         if not caps.apart(first, second):
             raise CannotCertify(f"'{one.id}' and '{other.id}', which are round, may overlap as a receiver sees them; not covered")
     added = sum((_light(light, outline, around, normal) for light, outline in outlines[:len(lights)]), arb(0))
     return added - sum((_hidden(surface, outline, around) for surface, outline in outlines[len(lights):]), arb(0))
+
+
+def _is_covered(light: Round, lights: Sequence[Round], screens: Sequence[Round], around: Surroundings) -> bool:
+    """Whether a light adds nothing to a sphere that is seen all around it: a sun behind it, or anything where nothing is dark."""
+    spheres = [thing for thing in (*lights, *screens) if _is_sphere(thing) and thing is not light]
+    if not isinstance(light, SunDisc) and (screens or around.dark):
+        return False
+    return any(caps.within(_outline(light, around), _outline(sphere, around)) for sphere in spheres)
+
+
+def _is_sphere(thing: Round) -> bool:
+    return not isinstance(thing, SunDisc) and isinstance(thing.shape, geometry.Sphere)
 
 
 def _is_disk(thing: Round) -> bool:
