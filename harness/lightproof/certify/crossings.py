@@ -63,13 +63,14 @@ class Wave:
         return self.level + self.x * cosine + self.y * sine + self.u * (2 * cosine * cosine - 1) + 2 * self.v * sine * cosine
 
     def roots(self) -> list[arb]:
-        """Balls of angles in a turn that hold every root, narrow where it is a simple one. Raises Undecided."""
+        """Balls of angles in a turn that hold every root, each a simple one, or two where the slope vanishes. Raises Undecided."""
         half = arb.pi().upper() / SPLIT
         parts, found = [half * (2 * i + arb(0, 1)) for i in range(SPLIT)], []
         while parts:
             if len(parts) > MOST_PARTS:
                 raise Undecided("the rims of two disks coincide as a receiver sees them")
             part = parts.pop(0)
+            flat = self.slope(part).contains(0)
             rest = self._step(part)
             if not rest.overlaps(part):
                 continue
@@ -77,7 +78,7 @@ class Wave:
             if 2 * rest.rad() < part.rad():
                 parts.append(rest)
             elif part.rad() < arb(2) ** (8 - ctx.prec // 2):
-                found.append(rest)
+                found += [rest, rest] if flat else [rest]
             else:
                 parts += [part.mid() + part.rad() / 2 * (sign + arb(0, 1)) for sign in (-1, 1)]
         return found
