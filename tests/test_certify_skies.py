@@ -84,6 +84,13 @@ def test_the_rest_of_a_sun_behind_a_blade():
     assert value == pytest.approx(1.3 * math.pi * math.sin(math.radians(20)) ** 2 / 2, rel=1e-15)
 
 
+def test_a_sun_in_the_horizon():
+    """Half a disc: L (a - sin(a) cos(a)), though no ball tells the centre's height from 0."""
+    a = math.radians(40)
+    value = certify(scene([sun(40, (-0.75, 0.25, 0.25))], at(X, (0, -1, 1)))).value[0]
+    assert value == pytest.approx(1.3 * (a - math.sin(a) * math.cos(a)), rel=1e-14)
+
+
 def test_the_wall_a_receiver_stands_on():
     """At the foot of a wall without end half the sky is left, but for what shows past its ends: a part in 1e4 of it."""
     wall = [[0, -9000, -1], [0, 9000, -1], [0, 9000, 9000], [0, -9000, 9000]]

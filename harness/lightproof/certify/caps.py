@@ -90,7 +90,7 @@ def whole(cap: Cap) -> Contour:
     """The contour of a cap."""
     axis, cosine = unit(cap.axis), cap.cosine
     across = unit(_perpendicular(cap.axis))
-    start = plus(times(axis, cosine), times(across, root(1 - cosine**2)))
+    start = plus(times(axis, cosine), times(across, root(1 - cap.cosine_squared)))
     return (Arc(axis, cosine, start, start, 2 * arb.pi()),)
 
 
@@ -143,8 +143,9 @@ def _crossings(cap: Cap, normal: Point) -> tuple[Vector, Vector]:
     """Where a great circle enters and leaves a cap."""
     axis, inwards = unit(cap.axis), unit(normal)
     along = dot(axis, inwards)
-    nearest = times(minus(axis, times(inwards, along)), cap.cosine / (1 - along**2))
-    half = times(cross(inwards, axis), root(1 - cap.cosine_squared / (1 - along**2)) / root(1 - along**2))
+    across = 1 - along * along
+    nearest = times(minus(axis, times(inwards, along)), cap.cosine / across)
+    half = times(cross(inwards, axis), root(1 - cap.cosine_squared / across) / root(across))
     return minus(nearest, half), plus(nearest, half)
 
 
@@ -157,7 +158,7 @@ def _great(normal: Point, start: Vector, end: Vector) -> Arc:
 def _rim(cap: Cap, start: Vector, end: Vector) -> Arc:
     """The arc of a rim from where one edge leaves to where the next enters: less than a whole turn. Raises CannotCertify."""
     axis, cosine = unit(cap.axis), cap.cosine
-    opposite, adjacent = dot(axis, cross(start, end)), dot(start, end) - cosine**2
+    opposite, adjacent = dot(axis, cross(start, end)), dot(start, end) - cap.cosine_squared
     if adjacent < 0:
         return Arc(axis, cosine, start, end, arb.pi() + arb.atan2(-opposite, -adjacent))
     turn = arb.atan2(opposite, adjacent)

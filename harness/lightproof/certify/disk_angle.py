@@ -23,7 +23,7 @@ def solid_angle(shape: geometry.Disk, receiver: Point, normal: Point | None) -> 
         return 2 * rim.turned(arb(0), arb.pi())
     level, across = dot(rim.centre, normal), times(normal, exact(shape.radius))
     along, beside = dot(across, rim.away), dot(across, rim.beside)
-    reach = root(along**2 + beside**2)
+    reach = root(along * along + beside * beside)
     if level >= reach:
         return 2 * rim.turned(arb(0), arb.pi())
     if level <= -reach:
@@ -48,11 +48,11 @@ class _Rim:
     def turned(self, start: arb, end: arb) -> arb:
         """The contour integral between two angles, counted from `away`."""
         half = self.radius * self.offset
-        fixed = self.height**2 + self.offset**2 + self.radius**2
+        fixed = self.height * self.height + self.offset * self.offset + self.radius * self.radius
 
         def integrand(t: acb, analytic: bool) -> acb:
             distance = root(fixed + 2 * half * t.cos())
-            return (self.radius**2 + half * t.cos()) / (distance * (distance + self.height))
+            return (self.radius * self.radius + half * t.cos()) / (distance * (distance + self.height))
 
         return acb.integral(integrand, start, end).real
 

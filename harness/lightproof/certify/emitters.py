@@ -117,7 +117,8 @@ def _sphere(radius: Number, squared: Ball, height: arb, above: str) -> Ball:
     share = radius * radius / squared
     if above == "whole":
         return arb.pi() * share * height / distance
-    x, w = root(squared / (radius * radius) - 1), root(1 - (height / radius) ** 2)
+    level = height / radius
+    x, w = root(squared / (radius * radius) - 1), root(1 - level * level)
     arc = arb.pi() / 2 + balls.arctan(x * height / (distance * w))
     return share * (height / distance * arc - x * w) + balls.arctan(w / x)
 
@@ -135,7 +136,8 @@ def disk_light(shape: geometry.Disk, radiance: float, receiver: Plane) -> Formul
         squared = dot(ray, ray)
         across = squared - along * along
         p = squared + radius * radius
-        d = root((p - 2 * radius * radius) ** 2 + 4 * radius * radius * along * along)
+        q = p - 2 * radius * radius
+        d = root(q * q + 4 * radius * radius * along * along)
         bend = tilt * across - (height - along * tilt) * along
         return -arb.pi() * exact(radiance) * radius * radius * (tilt - 2 * bend / (p + d)) / d
 

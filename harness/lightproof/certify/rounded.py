@@ -23,7 +23,7 @@ class Arc:
     def projected(self, normal: Vector) -> arb:
         """The part of Lambert's contour integral along the arc, half of (w x dw) . normal [sr]."""
         chord = dot(cross(self.axis, minus(self.end, self.start)), normal)
-        return ((1 - self.cosine**2) * self.turn * dot(self.axis, normal) + self.cosine * chord) / 2
+        return ((1 - self.cosine * self.cosine) * self.turn * dot(self.axis, normal) + self.cosine * chord) / 2
 
     def heading(self, place: Vector) -> Vector:
         """The direction in which the arc runs through a place, of any length."""
