@@ -59,7 +59,7 @@ POINT_SHADOW = Provenance(
 )
 BEAM_SHADOW = Provenance(
     "E = E₀ cos θ where nothing stands between, else 0",
-    "The cosine law; the shadow's edges are cut out exactly.",
+    "Over a film the hard edges of a beam's shadow are cut out exactly.",
     ("lambert1760",),
 )
 SKY = Provenance(
