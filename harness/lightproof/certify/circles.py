@@ -151,8 +151,8 @@ class Rim:
     def _squares(self) -> tuple[arb, arb, arb]:
         """p, q and d."""
         p, q = arb(dot(self.centre, self.centre) + self.square), 2 * self.radius * root(self.lean)
-        far = p + q
-        near = self.height * self.height / dot(self.axis, self.axis) + (self.radius - root(self.lean)) ** 2
+        far, gap = p + q, self.radius - root(self.lean)
+        near = self.height * self.height / dot(self.axis, self.axis) + gap * gap
         return p, q, root(far * near)
 
     def _primitives(self, f: arb) -> tuple[arb, arb, arb]:

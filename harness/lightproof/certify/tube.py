@@ -43,7 +43,8 @@ def _rim(offset: Vector, axis: Vector, radius: Number, height: Ball, normal: Vec
     square = dot(offset, offset)
     distance = root(square)
     p, q = square + height * height + radius * radius, 2 * radius * distance
-    d = root((height * height + (distance - radius) ** 2) * (height * height + (distance + radius) ** 2))
+    near, far = distance - radius, distance + radius
+    d = root((height * height + near * near) * (height * height + far * far))
     k, cosine = q / (p + d), radius / distance
     sine = root(1 - cosine * cosine)
     end, bend = arctan(sine / cosine), arctan(k * sine / (1 - k * cosine))
