@@ -27,12 +27,12 @@ def _beside(blocker: Shape, light: scene.Light, receivers: Sequence[Point], side
 
 
 def _above(light: scene.Light, plane: Plane) -> bool:
-    """Whether no part of a light is known to be behind a plane."""
+    """Whether no part of a light is known to be behind a plane; a point light on it has no side."""
     match light:
         case scene.AreaLight():
             return parting.above(parting.solid(light.shape), plane)
         case scene.PointLight():
-            return plane.height(point(light.position)) >= 0
+            return plane.height(point(light.position)) > 0
         case scene.DirectionalLight():
             return dot(plane.normal, point(light.direction)) <= 0
     return False

@@ -50,7 +50,7 @@ class Overlaps:
         x = self._inside(region)
         scale = Contour.of(loop(self.light, x), x).irradiance(x, self.normal) * planes.area(region)
         total = self._seen(region, (), near, scale)
-        return arb(0) if total.contains(0) and self._is_dark(region, near) else total
+        return arb(0) if total.contains(0) and not total.is_zero() and self._is_dark(region, near) else total
 
     def _is_dark(self, region: Region, near: Stack) -> bool:
         """Whether nothing of the light is seen from anywhere in a region: exactly none."""
