@@ -39,13 +39,6 @@ def sphere(d, z, radius):
 
 
 @strict
-def sun(cosine, cosine_half_angle):
-    """A distant disc: a sphere at distance 1 whose radius is the sine of the half-angle."""
-    radius = math.sqrt((1 - cosine_half_angle) * (1 + cosine_half_angle))
-    return sphere(1.0, cosine, radius)
-
-
-@strict
 def upper_sky(tilt_cosine):
     """A uniform sky above z = 0 on a plane whose normal has this third component: pi (1 + cos b)/2."""
     return math.pi * (1 + tilt_cosine) / 2

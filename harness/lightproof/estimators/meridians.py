@@ -148,8 +148,9 @@ def cut_by_ball(center, radius, c, s, cuts, count):
     if abs(off) >= radius:
         return count
     out = c * center[0] + s * center[1]
+    d = norm(center)
     middle = math.atan2(out, center[2])
-    half = math.asin(min(1.0, math.sqrt((radius - off) * (radius + off)) / math.hypot(out, center[2])))
+    half = math.atan2(math.sqrt((radius - off) * (radius + off)), math.sqrt(max((d - radius) * (d + radius), 0.0)))
     for angle in (middle - half, middle + half, middle + half - 2 * math.pi, middle - half + 2 * math.pi):
         if 0 < angle < math.pi:
             count = insert(cuts, count, angle)

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from lightproof import geometry
 from lightproof.estimators import round_curves
 from lightproof.estimators.analytic_limits import disks_unsupported, receiving_planes
 from lightproof.estimators.blockers import Plane, encloses
@@ -18,26 +17,22 @@ from lightproof.estimators.panorama import Panorama
 from lightproof.estimators.round_lights import Rounds
 from lightproof.estimators.shapes import parts
 from lightproof.estimators.sheet import Sheet, tidied
+from lightproof.estimators.sky_rows import SKIES, UP, sky_rows
 from lightproof.estimators.supports import crossing, plane_of, reaches
-from lightproof.estimators.terms import SKIES, SOLID, Term, farthest, solids, terms
+from lightproof.estimators.terms import SOLID, Term, farthest, solids, terms
 from lightproof.estimators.terms import receivers as rows
-from lightproof.estimators.world import OVERCAST, SUN, UNIFORM, UPPER
 from lightproof.geometry import Cylinder, Disk, Polygon, Sphere
 from lightproof.scene import (
     AreaLight,
     CameraFilm,
-    Environment,
     Light,
-    OvercastSky,
     PlaneFilm,
     PointsFilm,
     Scene,
-    SunDisc,
     Surface,
 )
 
 ORDER = (Polygon, Disk, Sphere, Cylinder)  # of the shapes in `Solids`
-UP = (0.0, 0.0, 1.0)
 AT_POINTS, IN_MEANS = 1e-12, 1e-7  # how far the two rules of a panorama may differ
 
 Thing = Light | Surface
@@ -152,22 +147,11 @@ def panorama(scene: Scene) -> Panorama:
     """The source for all that shines in a scene."""
     things, angle = sorted(solid(scene), key=lambda thing: ORDER.index(type(thing.shape))), angular(scene)
     glow = [float(isinstance(thing, AreaLight)) if angle else thing.radiance for thing in things]
-    skies = [sky_row(light, angle) for light in scene.lights if isinstance(light, SKIES)]
     return Panorama(
         solids=solids([thing.shape for thing in things], farthest(scene)),
         glow=np.array(glow, float),
-        skies=np.array(skies, float).reshape(-1, 6),
+        skies=sky_rows(scene, angle),
         cosine=not angle,
         whole=angle and scene.film.normals is None,
         enough=AT_POINTS if isinstance(scene.film, PointsFilm) else IN_MEANS,
     )
-
-
-def sky_row(light: Environment | SunDisc | OvercastSky, angle: bool) -> list[float]:
-    """Kind, radiance (1 where the solid angle is asked for), direction, sine of the half-angle."""
-    match light:
-        case SunDisc():
-            return [SUN, 1.0 if angle else light.radiance, *-geometry.unit(light.direction), np.sin(np.radians(light.half_angle))]
-        case OvercastSky():
-            return [UPPER, 1.0, *UP, 0.0] if angle else [OVERCAST, light.zenith_radiance, *UP, 0.0]
-    return [UNIFORM if light.extent == "sphere" else UPPER, 1.0 if angle else light.radiance, *UP, 0.0]

@@ -18,8 +18,8 @@ from lightproof.estimators.world import CENTER, DISK, KIND, NORMAL, OVERCAST, RA
 
 
 class Rounds(NamedTuple):
-    """The `items` of a `World`, of which disks and spheres are lights here, and its `skies`; `shade` (m,) is the index of the
-    disk in front of a disk, or -1."""
+    """The `items` of a `World`, of which disks and spheres are lights here, and rows of `skies` (see `sky_rows`); `shade` (m,) is
+    the index of the disk in front of a disk, or -1."""
 
     items: np.ndarray
     skies: np.ndarray
@@ -67,7 +67,7 @@ def from_sky(sky, n):
     if sky[0] == UNIFORM:
         return math.pi * sky[1]
     if sky[0] == UPPER:
-        return sky[1] * closed_forms.upper_sky(n[2])
+        return sky[1] * closed_forms.upper_sky(dot(n, vector(sky, 2)))
     if sky[0] == OVERCAST:
-        return sky[1] * closed_forms.overcast_sky(n[2])
-    return sky[1] * closed_forms.sun(-dot(n, vector(sky, 2)), sky[5])
+        return sky[1] * closed_forms.overcast_sky(dot(n, vector(sky, 2)))
+    return sky[1] * closed_forms.sphere(1.0, dot(n, vector(sky, 2)), sky[5])

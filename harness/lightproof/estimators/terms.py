@@ -19,22 +19,19 @@ from lightproof.estimators.hard_lights import TOUCH, Bulb, Solids
 from lightproof.estimators.quadrature import ORDER
 from lightproof.estimators.round_lights import Rounds
 from lightproof.estimators.sheet import Sheet, tidied
+from lightproof.estimators.sky_rows import SKIES, sky_rows
 from lightproof.estimators.soft_curves import above
 from lightproof.geometry import Cylinder, Disk, Polygon, Sphere
 from lightproof.scene import (
     AreaLight,
     DirectionalLight,
-    Environment,
-    OvercastSky,
     PlaneFilm,
     PointLight,
     PointsFilm,
     Scene,
-    SunDisc,
     Surface,
 )
 
-SKIES = Environment | SunDisc | OvercastSky
 SOLID = AreaLight | Surface
 
 
@@ -131,7 +128,7 @@ def rounds(scene: Scene) -> Iterator[Term]:
     if any(isinstance(light, SKIES) for light in scene.lights) or any(not isinstance(item.shape, Polygon) for item in things):
         whole = world.build(scene)
         shade = shades(scene, whole.items)
-        yield Term(Rounds(whole.items, whole.skies, shade), tidied([]), ORDER if (shade >= 0).any() else HIGHEST)
+        yield Term(Rounds(whole.items, sky_rows(scene), shade), tidied([]), ORDER if (shade >= 0).any() else HIGHEST)
 
 
 def receivers(scene: Scene) -> np.ndarray:
