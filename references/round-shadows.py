@@ -159,7 +159,7 @@ def line(normal, centre, along, up):
 
 def crossings(curve, t):
     """Where a curve meets a row."""
-    a, b, c = (mp.polyval(part[::-1], t) for part in curve)
+    a, b, c = (mp.polyval(part, t, asc=True) for part in curve)
     if a == 0:
         return [-c / b] if b else []
     square = b * b - 4 * a * c
@@ -189,7 +189,7 @@ def roots(polynomial):
         polynomial = polynomial[:-1]
     if len(polynomial) < 2:
         return []
-    found = polyroots(polynomial[::-1], maxsteps=200, extraprec=200)
+    found = polyroots(polynomial, maxsteps=200, extraprec=200, asc=True)
     return [mpc(root).real for root in found if abs(mpc(root).imag) < 1e-6]
 
 
