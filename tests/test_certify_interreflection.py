@@ -86,12 +86,13 @@ def test_a_lamp_in_the_wall_lights_all_of_it_alike(last):
 
 
 @pytest.mark.parametrize("last", BOUNCES)
-@pytest.mark.parametrize("film", [ON_WALL, INSIDE, CAMERA], ids=["wall", "inside", "camera"])
+@pytest.mark.parametrize("film", [ON_WALL, INSIDE, CAMERA | {"resolution": [40, 30]}], ids=["wall", "inside", "camera"])
 def test_zones_that_are_alike_are_a_sphere(last, film):
     """A glowing sphere around a bulb is the same whole and cut in two; on the wall and by camera wherever the bulb is."""
     bulb = BULB if film is INSIDE else ASIDE
-    whole = value([globe(0.6, 0.4)], film, [bulb], last)
-    assert value(zones(41, (0.6, 0.4), (0.6, 0.4)), film, [bulb], last) == pytest.approx(whole, rel=1e-14)
+    pair = ([globe(0.6, 0.4)], zones(41, (0.6, 0.4), (0.6, 0.4)))
+    whole, cut = (certify(scene(surfaces, film, [bulb], last), [0, 1]).value for surfaces in pair)
+    assert cut == pytest.approx(whole, rel=1e-14)
 
 
 @pytest.mark.parametrize("last", BOUNCES)
@@ -210,8 +211,8 @@ FLOOR = {"kind": "plane", "quantity": "irradiance", "origin": [-1.25, -0.5, 0.25
 
 @pytest.mark.parametrize("last", [1, 4, "all"])
 def test_what_a_cube_sends_back_is_a_part_of_what_arrives(last):
-    """The mean over half a wall: the direct mean, integrated by the solver of direct light, times 1 + rho + ..."""
-    straight = value(box(*DYADIC, 0.6), FLOOR, [MIDDLE], 0)
+    """The mean over half a wall: the direct mean, integrated over the cell, times 1 + rho + ..."""
+    straight = value([], FLOOR, [MIDDLE], 0)
     assert straight == pytest.approx([4 * math.pi * 2.3 / 6 / 3.125**2] * 2, rel=1e-12)
     assert value(box(*DYADIC, 0.6), FLOOR, [MIDDLE], last) == pytest.approx(straight * powers(0.6, last), rel=1e-12)
 
@@ -230,6 +231,7 @@ def test_a_room_that_glows_is_a_furnace_whatever_its_shape(last):
 LIT = polygon("floor", [[0, -0.9, 0], [2.7, -0.9, 0], [2.7, 1.2, 0], [0, 1.2, 0]], 0.57)
 WALL = {"kind": "plane", "quantity": "irradiance", "origin": [0, -1.3, 0.2], "u": [0, 2.6, 0], "v": [0, 0, 1.8],
         "resolution": [3, 2]}
+PATCH = WALL | {"origin": [0, 0.1, 0.7], "u": [0, 0.4, 0], "v": [0, 0, 0.3], "resolution": [2, 1]}
 
 
 @pytest.mark.parametrize("direction", [[0, 0, -1], [0.6, 0.3, -1.1]])
@@ -238,19 +240,20 @@ def test_a_lit_floor_is_a_lamp(direction):
     cosine = -direction[2] / math.hypot(*direction)
     lamp = {"id": "floor", "kind": "area", "shape": LIT["shape"], "radiance": 0.57 * 4.1 * cosine / math.pi}
     beam = BEAM | {"direction": direction}
-    expected = value([], WALL, [lamp], 0)
-    assert value([LIT], WALL, [beam], 1) == pytest.approx(expected, rel=1e-15)
+    expected = value([], PATCH, [lamp], 0)
+    assert value([LIT], PATCH, [beam], 1) == pytest.approx(expected, rel=1e-15)
     strip = polygon("strip", [[0.3, 1.2, 0], [1.7, 1.2, 0], [1.7, 2.1, 0], [0.3, 2.1, 0]], 0.9)
-    alone = value([strip], WALL, [beam], 1)
-    assert value([LIT, strip], WALL, [beam], "all") == pytest.approx(expected + alone, rel=1e-15)
+    alone = value([strip], PATCH, [beam], 1)
+    assert value([LIT, strip], PATCH, [beam], "all") == pytest.approx(expected + alone, rel=1e-15)
 
 
 def test_two_beams_add():
     """On the wall and on the floor: a beam that the wall faces arrives straight too."""
     second = {"id": "lamp", "kind": "directional", "direction": [-1, 0, -1], "irradiance": 1.3}
     floor = polygon("floor", [[0.1, -0.9, 0], [2.7, -0.9, 0], [2.7, 1.2, 0], [0.1, 1.2, 0]], 0.57)
-    alone = value([floor], WALL, [BEAM], 1), value([floor], WALL, [second], 1)
-    assert value([floor], WALL, [BEAM, second], 1) == pytest.approx(sum(alone), rel=1e-14)
+    film = {"kind": "points", "quantity": "irradiance", "positions": [[0, 0.2, 0.9], [0, -1.1, 0.3]], "normals": [[1, 0, 0]] * 2}
+    alone = value([floor], film, [BEAM], 1), value([floor], film, [second], 1)
+    assert value([floor], film, [BEAM, second], 1) == pytest.approx(sum(alone), rel=1e-14)
     assert (alone[1] > 1.3 / math.sqrt(2)).all()
 
 
@@ -258,12 +261,12 @@ def test_two_beams_add():
 def test_perpendicular_rectangles_down_to_the_line_where_they_meet(beside):
     """Cells that stay off the line, or are beside the light: as Lambert's formula integrates. Halves of a cell average to it."""
     lamp = {"id": "floor", "kind": "area", "shape": LIT["shape"], "radiance": 1.3}
-    film = WALL | {"origin": [0, beside, 0], "v": [0, 0, 2.0]}
+    film = WALL | {"origin": [0, beside, 0], "v": [0, 0, 3.2]}
     made = scene([], film, [lamp], 0)
     assert perpendicular.covers(made)
     with ctx.workprec(PRECISION):
         whole, smooth = perpendicular.solve(made), direct.solve(made)
-        for element in (3, 4, 5):
+        for element in (3, 5):
             assert whole(element).overlaps(smooth(element))
         halves = perpendicular.solve(scene([], film | {"resolution": [3, 4]}, [lamp], 0))
         for element in range(3):
