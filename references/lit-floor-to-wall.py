@@ -1,10 +1,10 @@
-"""Second derivation for lit-floor-to-wall: a floor under a beam is a lamp of radiance rho E cos / pi.
+"""Second derivation for lit-floor-to-wall: to cells a double contour integral of ln r, to points Nusselt's analogue.
 
-Over a cell: flux between floor and cell as a double contour integral of ln r dx . dy (Schröder and Hanrahan 1993), along the
-floor's edges elementary, along the cell's by a 24-point Gauss rule, or by double exponential quadrature where they are near,
-as that bears the logarithm where they touch. At a point: Nusselt's analogue, the area under the floor's image on the unit
-sphere, its outline followed numerically; what a screen hides is clipped out of the floor and taken away. 30 digits. Prints the
-base case as JSON.
+A floor under a beam is a lamp of radiance rho E cos / pi. Over a cell ln r dx . dy is integrated around cell and floor
+(Schröder and Hanrahan 1993), along the floor's edges elementary, along the cell's by a 24-point Gauss rule, or by double
+exponential quadrature where they are near, as that bears the logarithm where they touch. At a point the area under the floor's
+image on the unit sphere is found by following its outline; what a screen hides is clipped out of the floor and taken away. 30
+digits. Prints the base case as JSON.
 """
 
 import json
