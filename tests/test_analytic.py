@@ -106,6 +106,21 @@ def test_umbra_is_exactly_black(name):
     assert not film(suite.find(name, CATALOGUE)[0], 64).any()
 
 
+ON = [([0.1, 0.1, 0], [1, 0, 0.2]), ([0.1, -0.2, 0], [-1, 0.3, 0.1]), ([0.1, 0.1, 0], [0, 0, 1]), ([0.1, 0.1, 0], [1, 0, -0.2])]
+BORDER = [([0.6, 0.1, 0], [-1, 0.4, 0.3]), ([0.6, 0.1, 0], [1, 0.4, 0.3]), ([-0.4, -0.7, 0], [1, 0.4, 0.3]),
+          ([-0.4, -0.7, 0], [1, -0.4, 0.3])]  # fmt: skip
+
+
+@pytest.mark.parametrize(("receivers", "digits"), [(ON, DIGITS), (BORDER, 1e-10)], ids=["inside", "border"])
+def test_points_on_a_light_see_it_in_the_limit(receivers, digits):
+    """Points of a lamp that faces up, approached from where their normals point: the limit of the first engine; on the lamp's
+    edges and corners by extrapolation, which keeps fewer digits."""
+    one = scene([lamp([[-0.4, -0.7, 0], [0.6, -0.7, 0], [0.6, 0.3, 0], [-0.4, 0.3, 0]])], points(*zip(*receivers, strict=True)))
+    exact = [float(ball) for ball in certify(one).value]
+    assert max(exact) > 1
+    np.testing.assert_allclose(film(one), exact, rtol=digits, atol=digits)
+
+
 coordinate = st.floats(-1, 1).map(lambda number: round(number, 3))
 corner = st.tuples(coordinate, coordinate, coordinate)
 

@@ -19,10 +19,14 @@ from lightproof.estimators.lambert import LEVEL, A, B, S, T
 from lightproof.estimators.levels import ZERO, level
 from lightproof.estimators.rows import point
 from lightproof.estimators.sources import desk, irradiance
-from lightproof.estimators.vectors import cross, dot, norm, scaled, sub, turned
+from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub, turned
 
 TOUCH = 1e-13  # of the coordinates: what lies no farther from a plane coincides with it
 MUCH = 0.1  # distances over heights below which a step places a corner better than its edge's ends do
+BORDER = 0
+FLUSH = 1e-31  # 1 - cosine of an angle between unit vectors that rounding leaves of none
+STEP = 2.0**-20  # of an edge: from the border of a light, for the limit
+SLACK = 1e-6  # of an angle
 NOTHING = 1e-15  # of a light's area: what is left of it by rounding
 U, V, W, ABOVE, BEFORE = range(5)  # columns of a blocker's corners: the light's frame, above the receiver, before the light
 
@@ -87,25 +91,64 @@ def _irradiance(source, desk, x, n):
 
 def from_polygon(source, desk, x, n):
     h = -level(source.frame[2], source.low, point(source.corners, 0), x)
-    if h <= 0:
+    unit = scaled(1 / norm(n), n)
+    if h > 0:
+        return source.radiance * in_front(source, desk, x, n, unit, h)
+    rise = dot(unit, source.frame[2])
+    if h < 0 or rise <= 0:
         return 0.0
-    length = norm(n)
-    unit = scaled(1 / length, n)
+    return source.radiance * in_plane(source, desk, x, n, unit, rise)
+
+
+@strict
+def in_front(source, desk, x, n, unit, h):
+    """Irradiance per radiance h in front of the light's plane; `unit` is n over its length."""
     facing = turned(unit, source.frame, 1.0)
     shadows = cast(source, desk, x, unit, h)
     total = 0.0
     for part in range(len(source.parts) - 1):
-        count = seen(source, desk, part, x, n, length)
+        count = seen(source, desk, part, x, n)
         if count:
             settle(desk.light[1], count, h, facing)
             total += past(desk, count, shadows, h, facing)
-    return source.radiance * total
+    return total
 
 
 @strict
-def seen(source, desk, part, x, n, length):
-    """The corners of a part of the light above the horizon, into desk.light[1]; returns their count. `length` is that of n."""
-    begin, end, rows = source.parts[part], source.parts[part + 1], desk.light[0]
+def in_plane(source, desk, x, n, unit, rise):
+    """Irradiance per radiance in the light's plane, in the limit from where n points, `rise` being its share along the light's
+    normal: on the light it fills half the sphere; on its border the limit is taken by steps; beside it, nothing is seen."""
+    inside = place(source, x)
+    if inside != BORDER:
+        tilt = sub(unit, source.frame[2])
+        share = dot(tilt, tilt) / 2 if inside > 0 else 0.0
+        return math.pi / 2 * share if share > FLUSH else 0.0
+    step = STEP * norm(sub(point(source.corners, 0), point(source.corners, 1)))
+    near = in_front(source, desk, along(x, step, unit), n, unit, step * rise)
+    return 2 * near - in_front(source, desk, along(x, 2 * step, unit), n, unit, 2 * step * rise)
+
+
+@strict
+def place(source, x):
+    """Where in the light's plane x lies: 1 on the light, -1 beside it, BORDER."""
+    around, border = 0.0, False
+    for part in range(len(source.parts) - 1):
+        begin, end = source.parts[part], source.parts[part + 1]
+        for i in range(begin, end):
+            a, b = sub(point(source.corners, i), x), sub(point(source.corners, i + 1 if i + 1 < end else begin), x)
+            sine, cosine = dot(cross(a, b), source.frame[2]), dot(a, b)
+            between = abs(sine) <= source.touch * norm(sub(b, a)) and cosine <= 0
+            around += 0.0 if between else math.atan2(sine, cosine)
+            border |= between
+    if around > 2 * math.pi - SLACK:
+        return 1
+    return BORDER if border else -1
+
+
+@strict
+def seen(source, desk, part, x, n):
+    """The corners of a part of the light above the horizon, into desk.light[1]; returns their count."""
+    begin, end, rows, length = source.parts[part], source.parts[part + 1], desk.light[0], norm(n)
     for i in range(begin, end):
         corner, row = point(source.corners, i), rows[i - begin]
         d = sub(corner, x)
