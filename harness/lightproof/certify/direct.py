@@ -125,8 +125,8 @@ def _flux(frame: Frame, lights: list[Field], region: Region) -> arb:
 def solve(scene_: Scene) -> Element:
     """The irradiance of a plane or points film, element by element. Raises CannotCertify."""
     if scene_.reflects:
-        raise CannotCertify("reflected light is covered in a sphere of one or two zones, between concentric spheres, in closed rooms"
-                            " that are alike all over, and from polygons that beams light evenly")
+        raise CannotCertify("light reflected between surfaces is covered in a sphere of one or two zones, between concentric"
+                            " spheres, in closed rooms alike all over, and from polygons that beams light evenly")
     _check_overlaps(scene_)
     film = scene_.film
     if isinstance(film, PointsFilm):
