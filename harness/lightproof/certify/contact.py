@@ -20,7 +20,7 @@ def touches(shape: geometry.Shape, x: Point, normal: Point | None) -> bool:
     match shape:
         case geometry.Polygon():
             parts = convex_parts([point(corner) for corner in shape.vertices])
-            return any(_leaves(part, x, normal) for _, part in parts)
+            return any(_leaves(part, x, normal) for part in parts)
         case geometry.Disk():
             axis, ray = point(shape.normal), minus(x, point(shape.center))
             level = normal is not None and (dot(axis, normal) == 0 or not any(cross(axis, normal)))
@@ -44,7 +44,7 @@ def overlap(a: geometry.Polygon, b: geometry.Polygon) -> bool:
     front = area_vector(one)
     if any(dot(front, minus(corner, one[0])) != 0 for corner in other):
         return False
-    return any(_common(part, cutter) for _, part in convex_parts(one) for _, cutter in convex_parts(other))
+    return any(_common(part, cutter) for part in convex_parts(one) for cutter in convex_parts(other))
 
 
 def _common(part: Convex, cutter: Convex) -> bool:

@@ -73,16 +73,16 @@ def _polygon(corners: tuple, x: Array) -> tuple[Outlines, Array]:
     facing = (floats(corners[0]) - x) @ floats(area_vector(corners))
     edges: dict[frozenset, tuple[tuple, Greats]] = {}
     parts = []
-    for sign, part in convex_parts(corners):
+    for part in convex_parts(corners):
         way = (floats(part[0]) - x) @ floats(area_vector(part)) > 0
         ends = list(zip(part, (*part[1:], part[0]), strict=True))
         for ab in ends:
             edges.setdefault(frozenset(ab), (ab, _edge(*ab, x)))
         known = [(ab, *edges[frozenset(ab)]) for ab in ends]
-        parts.append((sign, [(edge, (way if ab == first else ~way)[:, None]) for ab, first, edge in known]))
+        parts.append([(edge, (way if ab == first else ~way)[:, None]) for ab, first, edge in known])
 
     def contains(side: Side) -> Array:
-        return sum(sign * reduce(np.logical_and, (side(edge) == way for edge, way in part)) for sign, part in parts) > 0
+        return reduce(np.logical_or, (reduce(np.logical_and, (side(edge) == way for edge, way in part)) for part in parts))
 
     return Outlines(tuple(edge for _, edge in edges.values()), contains), facing < 0
 

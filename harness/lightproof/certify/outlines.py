@@ -54,15 +54,15 @@ def polygon(corners: list[Point]) -> Outline:
     if facing == 0:
         return NOTHING
     parts = []
-    for sign, part in convex_parts(corners if facing > 0 else corners[::-1]):
+    for part in convex_parts(corners if facing > 0 else corners[::-1]):
         ends = (*part[1:], part[0])
         way = 1 if dot(area_vector(part), part[0]) > 0 else -1
-        parts.append((sign, [Great(times(cross(a, minus(b, a)), way)) for a, b in zip(part, ends, strict=True)]))
+        parts.append([Great(times(cross(a, minus(b, a)), way)) for a, b in zip(part, ends, strict=True)])
 
     def contains(side: Side) -> bool:
-        return sum(sign for sign, edges in parts if all(map(side, edges))) > 0
+        return any(all(map(side, edges)) for edges in parts)
 
-    return Outline(tuple(edge for _, edges in parts for edge in edges), contains)
+    return Outline(tuple(edge for edges in parts for edge in edges), contains)
 
 
 def disk(centre: Point, axis: Point, radius: Rational) -> Outline:

@@ -7,7 +7,6 @@ arithmetic; how much light, follows by Lambert's formula (`contour`) for any rec
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import reduce
 from itertools import pairwise
@@ -17,7 +16,6 @@ from lightproof.certify.balls import Number, Point, Vector, cross, dot, minus, p
 
 Edge = tuple[Point, Point]
 Loop = tuple[Edge, ...]  # runs round so that edge normals point inwards
-Parts = tuple[tuple[int, tuple[Point, ...]], ...]  # convex polygons, each with a sign, that add up to a polygon
 
 
 def loop(corners: Sequence[Point], receiver: Point) -> Loop:
@@ -52,32 +50,9 @@ def clip(corners: Sequence[Point], normal: Point, offset: Number) -> tuple[Point
     return tuple(kept)
 
 
-def convex_parts(corners: Sequence[Point]) -> Parts:
+def convex_parts(corners: Sequence[Point]) -> list[tuple[Point, ...]]:
     """Convex polygons that tile a simple polygon. Raises CannotCertify where it is not simple."""
-    return tuple((1, part) for part in convex.parts(corners, area_vector(corners)))
-
-
-def visible(light: Parts, blockers: Sequence[Parts], receiver: Point) -> Counter[Loop]:
-    """Loops with counts that add up to what the receiver sees of a light behind blockers."""
-    seen: Counter[Loop] = Counter()
-    for sign, corners in light:
-        for part, count in _uncovered(loop(corners, receiver), blockers, receiver).items():
-            seen[part] += sign * count
-    return Counter({part: count for part, count in seen.items() if part and count})
-
-
-def _uncovered(light: Loop, blockers: Sequence[Parts], receiver: Point) -> Counter[Loop]:
-    """What is seen past all blockers but the first, less what of that the first one hides."""
-    if not blockers:
-        return Counter({light: 1})
-    first, *others = blockers
-    seen = _uncovered(light, others, receiver)
-    for sign, corners in first:
-        hidden = intersection(light, loop(corners, receiver), receiver)
-        if hidden:
-            for part, count in _uncovered(hidden, others, receiver).items():
-                seen[part] -= sign * count
-    return seen
+    return convex.parts(corners, area_vector(corners))
 
 
 def difference(a: Loop, b: Loop, receiver: Point) -> list[Loop]:

@@ -65,7 +65,7 @@ def above(polygon: geometry.Polygon, *floors: Plane) -> tuple[Convex, ...]:
 
 @cache
 def _tiles(polygon: geometry.Polygon) -> tuple[Convex, ...]:
-    return tuple(part for _, part in convex_parts([point(corner) for corner in polygon.vertices]))
+    return tuple(convex_parts([point(corner) for corner in polygon.vertices]))
 
 
 @cache

@@ -94,7 +94,7 @@ class _Screen:
     def of(cls, light: Sky, blockers: Sequence[geometry.Polygon], receiver: Plane) -> _Screen:
         """The part of the blockers that counts."""
         polygons = [[point(corner) for corner in blocker.vertices] for blocker in blockers]
-        tiles = [part for corners in polygons for _, part in convex_parts(corners)]
+        tiles = [part for corners in polygons for part in convex_parts(corners)]
         return cls(receiver, tuple(cut(tiles, receiver)), is_level(light, receiver))
 
     @property
