@@ -16,7 +16,6 @@ from lightproof.estimators.cells import HIGHEST
 from lightproof.estimators.flats import Plane, polygon_light
 from lightproof.estimators.hard_curves import Rays
 from lightproof.estimators.hard_lights import TOUCH, Bulb, Solids
-from lightproof.estimators.quadrature import ORDER
 from lightproof.estimators.round_lights import Rounds
 from lightproof.estimators.sheet import Sheet, tidied
 from lightproof.estimators.sky_rows import SKIES, sky_rows
@@ -33,6 +32,7 @@ from lightproof.scene import (
 )
 
 SOLID = AreaLight | Surface
+COARSE = 4  # nodes of a rule that is to shrink past a light's edges
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ def rounds(scene: Scene) -> Iterator[Term]:
     if any(isinstance(light, SKIES) for light in scene.lights) or any(not isinstance(item.shape, Polygon) for item in things):
         whole = world.build(scene)
         shade = shades(scene, whole.items)
-        yield Term(Rounds(whole.items, sky_rows(scene), shade), tidied([]), ORDER if (shade >= 0).any() else HIGHEST)
+        yield Term(Rounds(whole.items, sky_rows(scene), shade), tidied([]), COARSE if (shade >= 0).any() else HIGHEST)
 
 
 def receivers(scene: Scene) -> np.ndarray:
