@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from lightproof.estimators.compiled import strict
-from lightproof.estimators.sources import irradiance
+from lightproof.estimators.sources import irradiance, is_round
 from lightproof.estimators.tracing import vector
 from lightproof.estimators.vectors import along
 
@@ -72,10 +72,10 @@ def line(source, desk, element, curves, p, panels, order, roots):
     """Integral over q at p, and the number of nodes."""
     count = between(curves, p, roots)
     start, normal = along(vector(element, 0), p, vector(element, 3)), vector(element, 9)
-    total = 0.0
+    total, crowded = 0.0, is_round(source) and bends(curves)
     for k in range(count - 1):
         for i in range(panels * order):
-            q, weight = node(roots[k], roots[k + 1], panels, order, i, False)
+            q, weight = node(roots[k], roots[k + 1], panels, order, i, crowded)
             total += weight * irradiance(source, desk, along(start, q, vector(element, 6)), normal)
     return total, (count - 1) * panels * order
 

@@ -54,6 +54,8 @@ class Panorama(NamedTuple):
     whole: bool
     enough: float
 
+    ROUND = True
+
 
 class Desk(NamedTuple):
     """The receiver's `scenery`, and room: angles of `cuts` and `breaks`, what the `first` rule gave between those, parts of a

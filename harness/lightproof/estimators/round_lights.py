@@ -25,6 +25,8 @@ class Rounds(NamedTuple):
     skies: np.ndarray
     shade: np.ndarray
 
+    ROUND = True
+
 
 @overload(desk)
 def _desk(source):
