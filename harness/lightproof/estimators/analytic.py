@@ -1,5 +1,6 @@
 """Closed forms at points, Gauss quadrature over elements: no noise. Lambert's formula for polygons clipped at the horizon
-and cut by polygons in between (Arvo 1994, 1995); disks, spheres and skies; hard shadows; spheres full of reflected light."""
+and cut by polygons in between (Arvo 1994, 1995); disks, spheres and skies; hard shadows; anything else by a look along all
+meridians; spheres and rooms full of reflected light."""
 
 from __future__ import annotations
 
@@ -39,7 +40,7 @@ def film(source, curves, elements, first, grid, samples, most, out):
 
 
 class Analytic(Estimator):
-    """Direct light of the shapes that have a closed form, and spheres full of reflected light; `samples` are the nodes of
+    """Direct light, also as solid angle or reflected once, and closed shapes full of reflected light; `samples` are the nodes of
     an element, more where it is cut into many pieces, and points need none."""
 
     deterministic = True

@@ -7,22 +7,11 @@ import numpy as np
 from lightproof import scene as scenes
 from lightproof.estimators import elements
 from lightproof.estimators.blockers import Plane, between, plane_of
-from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, support
+from lightproof.estimators.shapes import Disk, Flat, Sphere, parts, support
 from lightproof.estimators.world import CENTER, DISK, KIND, V
 from lightproof.scene import CameraFilm, Scene
 
 PARALLEL = 1e-12  # 1 - |cosine| of two disks that count as parallel
-
-
-def direct_unsupported(scene: Scene) -> str | None:
-    """Why some light has no closed form on some receiver; None where every one has."""
-    for item in (*scene.lights, *scene.surfaces):
-        for piece in emitting_pieces(item):
-            for plane in receiving_planes(scene):
-                reason = piece_unsupported(piece, between(scene, item.id, piece, plane), plane, item.id)
-                if reason:
-                    return reason
-    return None
 
 
 def emitting_pieces(item: scenes.Light | scenes.Surface) -> list[Flat | Sphere | None]:
@@ -37,16 +26,6 @@ def receiving_planes(scene: Scene) -> list[Plane | None]:
     if not isinstance(scene.film, CameraFilm):
         return [elements.flat(elements.receivers(scene.film))]
     return [plane_of(piece) for surface in scene.surfaces if surface.reflectance for piece in parts(surface.shape)]
-
-
-def piece_unsupported(light: Flat | Sphere | None, blockers: list[Flat | Sphere], plane: Plane | None, name: str) -> str | None:
-    """Why the shadow of `blockers` has no closed form for one piece of the light `name`."""
-    polygons = all(isinstance(piece, Parallelogram | Triangle) for piece in (light, *blockers))
-    if polygons or not blockers:
-        return None
-    if isinstance(light, Disk) and len(blockers) == 1 and isinstance(blockers[0], Disk):
-        return disks_unsupported(light, blockers[0], plane, name)
-    return f"no closed form for what shadows '{name}'; there is one for polygons before a polygon, a disk before a parallel disk"
 
 
 def disks_unsupported(light: Disk, blocker: Disk, plane: Plane | None, name: str) -> str | None:
