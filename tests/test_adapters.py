@@ -111,7 +111,7 @@ from lightproof.renderers import cycles, mitsuba, pyrender
 methods = {{"mitsuba": mitsuba.Mitsuba, "cycles": cycles.Cycles, "pyrender": pyrender.Pyrender}}
 for name, scene, reason in {UNSUPPORTED!r}:
     assert methods[name](name, 1).unsupported(suite.default().scene(scene)) == reason
-for scene in suite.default().scenes():
+for scene in filter(lambda scene: "quick" in scene.tags, suite.default().scenes()):
     assert methods["mitsuba"]("mitsuba", 1).unsupported(scene) is None
     assert methods["cycles"]("cycles", 1).unsupported(scene) is None
 """
@@ -142,12 +142,12 @@ def _broken(name: str) -> None:
     raise ImportError("libGL.so.1: cannot open shared object file")
 
 
-BASE = [SUITE.scene(name) for name in SUITE.ids]
+BASE = [scene for name in SUITE.ids if "quick" in (scene := SUITE.scene(name)).tags]
 
 
 @pytest.mark.parametrize("method", ["mitsuba", "cycles"])
 def test_base_scenes(method: str, tmp_path: Path):
-    """Every base scene at 256 samples: the film's mean within 0.5 per cent of the reference's, the elements together within 5
+    """Every quick scene at 256 samples: the film's mean within 0.5 per cent of the reference's, the elements together within 5
     per cent of the film's largest. This is a check of the adapter; the verdict on the renderer is the harness's."""
     for scene, answer in zip(BASE, one_process.render(method, [Shot(scene, 256) for scene in BASE], tmp_path), strict=True):
         exact, film = SUITE.reference(scene).value, np.array(answer["film"])

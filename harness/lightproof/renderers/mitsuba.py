@@ -24,6 +24,7 @@ from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, Po
 PASS = 1024  # samples per pass: the film adds up in float32 and is off by 5e-5 after 4,096 samples
 WAVEFRONT = 2**24  # paths at a time
 SKY_ROWS = 2**11  # of the map of half a sky, whose horizon is blurred over one row
+FAR = 1e4  # m: Mitsuba's own far clip, beyond which only scenes seen from farther away go
 LLVM = "karellen-llvm-core"
 
 
@@ -94,7 +95,8 @@ class Mitsuba(Method):
         columns, rows = view.resolution
         film = {"type": "hdrfilm", "width": columns, "height": rows, "rfilter": {"type": "box"}, "component_format": "float32",
                 "pixel_format": "rgb" if self.variant.endswith("rgb") else "luminance"}
-        camera = {**self._lens(view), "near_clip": view.near, "film": film, "sampler": {"type": "multijitter"}}
+        clip = {"near_clip": view.near, "far_clip": max(FAR, 1e3 * view.near)}
+        camera = {**self._lens(view), **clip, "film": film, "sampler": {"type": "multijitter"}}
         built = {"type": "scene", "integrator": self.integrator, "film-camera": camera}
         if view.receiver:
             content = {"bsdf": diffuse(view.receiver.reflectance)}
