@@ -23,7 +23,9 @@ def values(scene, elements):
 def projected(b):
     """Projected solid angle [sr] of the upper half of the sky for a plane tilted by b < pi."""
     whole = quad(lambda t: 2 * pi * cos(t) * sin(t), [0, max(0, pi / 2 - b)])
-    return whole + (quad(lambda t: 2 * acos(max(mpf(-1), -cot(t) * cot(b))) * cos(t) * sin(t), [abs(pi / 2 - b), pi / 2]) if b else 0)
+    if not b:
+        return whole
+    return whole + quad(lambda t: 2 * acos(max(mpf(-1), -cot(t) * cot(b))) * cos(t) * sin(t), [abs(pi / 2 - b), pi / 2])
 
 
 def tilt(film):

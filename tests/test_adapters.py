@@ -23,7 +23,7 @@ ROUND = {"disk": Disk((0.1, 0.2, 0.3), (1, 2, 2), 0.7), "cylinder": Cylinder((0.
 
 
 def test_meshes_keep_the_area():
-    """An L of area 4, a disk, a cylinder, a cap and a sphere of radius 0.7: their triangles have the same area, fronts outward."""
+    """An L of area 4, a disk, a cylinder, a cap and a sphere of radius 0.7: their triangles have that area, fronts outward."""
     ball = mesh.tessellate(Sphere((0.1, 0.2, 0.3), 0.7))
     assert ball.area == pytest.approx(4 * np.pi * 0.49, rel=1e-12)
     assert mesh.tessellate(L_SHAPE).area == pytest.approx(4, rel=1e-12)

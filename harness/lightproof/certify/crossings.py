@@ -63,7 +63,7 @@ class Wave:
         return self.level + self.x * cosine + self.y * sine + self.u * (2 * cosine * cosine - 1) + 2 * self.v * sine * cosine
 
     def roots(self) -> list[arb]:
-        """Balls of angles in a turn that hold every root, each a simple one, or two where the slope vanishes. Raises Undecided."""
+        """Balls of angles in a turn that hold every root, each one, or two where the slope vanishes. Raises Undecided."""
         half = arb.pi().upper() / SPLIT
         parts, found = [half * (2 * i + arb(0, 1)) for i in range(SPLIT)], []
         while parts:
