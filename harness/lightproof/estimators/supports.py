@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
 from lightproof import geometry
 from lightproof.estimators.blockers import CONTACT, Plane
+from lightproof.estimators.flats import convex_parts
 from lightproof.geometry import Cylinder, Disk, Polygon, Shape, Vec3
 from lightproof.scene import AreaLight, Surface
 
@@ -51,9 +52,18 @@ def size(shape: Shape) -> float:
 def crossing(things: list[AreaLight | Surface]) -> str | None:
     """Why a look around may not tell which of two things is in front: no plane through one's faces or edges parts them."""
     for one, other in combinations(things, 2):
-        if not any(parts_them(one.shape, other.shape, direction) for direction in directions(one.shape, other.shape)):
+        if not all(apart(*pair) for pair in product(convex(one.shape), convex(other.shape))):
             return f"'{one.id}' and '{other.id}' may cut through each other, which shadows of curved shapes and in skies may not"
     return None
+
+
+def convex(shape: Shape) -> list[Shape]:
+    """Convex parts of a shape."""
+    return [Polygon(tuple(map(tuple, part.tolist()))) for part in convex_parts(shape)] if isinstance(shape, Polygon) else [shape]
+
+
+def apart(one: Shape, other: Shape) -> bool:
+    return any(parts_them(one, other, direction) for direction in directions(one, other))
 
 
 def parts_them(one: Shape, other: Shape, direction: np.ndarray) -> bool:
