@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from brute_force import solid_angle
 from test_analytic import CATALOGUE, MEANS, film, points
 from test_certify import blocker, lamp, scene
+from test_certify_solid_angle import NORMAL, SCENES, X, seen_from
 
 from lightproof import suite
 from lightproof.estimators import outlook
@@ -102,6 +104,16 @@ def test_solid_angles_count_once():
     assert film(both)[0] == pytest.approx(2 * np.pi * (1 - np.sqrt(1 - sines[1] ** 2)), rel=1e-13)
     black = scene([glow(ball([0, 2.3, 0], 0.7), "far")], where, [solid(ball([0, 0.9, 0], 0.2))])
     assert film(black)[0] == pytest.approx(2 * np.pi * (np.sqrt(1 - sines[0] ** 2) - np.sqrt(1 - sines[1] ** 2)), rel=1e-13)
+
+
+@pytest.mark.parametrize("normal", [None, NORMAL])
+@pytest.mark.parametrize("name", [name for name, things in SCENES.items() if not why(scene(things[0], seen_from(), things[1]))])
+def test_solid_angles_agree_with_first_hits(name, normal):
+    """A million rays, of those scenes in which nothing cuts through another thing."""
+    lights, surfaces = SCENES[name]
+    one = scene(lights, seen_from(normal=normal), surfaces)
+    rays = solid_angle(one, np.array(X), None if normal is None else np.array(normal))
+    assert film(one)[0] == pytest.approx(rays, abs=1e-3)
 
 
 def test_what_it_cannot_do_it_says():
