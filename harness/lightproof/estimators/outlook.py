@@ -33,7 +33,7 @@ from lightproof.scene import (
 )
 
 ORDER = (Polygon, Disk, Sphere, Cylinder)  # of the shapes in `Solids`
-AT_POINTS, IN_MEANS = 1e-12, 1e-7  # how far the two rules of a panorama may differ
+AT_POINTS, IN_MEANS = 1e-12, 1e-9  # how far the two rules of a panorama may differ
 
 Thing = Light | Surface
 
