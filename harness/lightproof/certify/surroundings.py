@@ -26,7 +26,7 @@ class Face:
 def face(shape: geometry.Polygon, x: Point, light: bool) -> Face | None:
     """A polygon as a receiver sees it; None where it is seen edge-on. Raises CannotCertify for a receiver on it."""
     corners = tuple(map(point, shape.vertices))
-    tiles, plane = [part for _, part in convex_parts(corners)], planes.of(corners)
+    tiles, plane = convex_parts(corners), planes.of(corners)
     height = plane.height(x)
     if height:
         return Face(tuple(tiles), plane if height > 0 else plane.turned, light and height > 0)
