@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from lightproof.estimators.compiled import strict
 from lightproof.estimators.vectors import along, dot, norm
+
+SLIVER = 0.5  # rad above the horizon: a sphere that rises less is summed, for Snyder's terms cancel
+NODES, WEIGHTS = ((1 + np.polynomial.legendre.leggauss(20)[0]) / 2, np.polynomial.legendre.leggauss(20)[1] / 2)
 
 
 @strict
@@ -19,7 +24,7 @@ def disk(center, normal, radius, n):
         return 0.0
     towards = along(center, h, normal)
     a, r2 = norm(towards), radius * radius
-    p, q = h * h + a * a - r2, h * h + a * a + r2
+    p, q = h * h + (a - radius) * (a + radius), h * h + a * a + r2
     s = math.hypot(p, 2 * radius * h)
     upright = 2 * r2 * h * h / (s * (s + p)) if p > 0 else (s - p) / (2 * s)
     return math.pi * (2 * h * r2 / (s * (s + q)) * dot(towards, n) - upright * dot(normal, n))
@@ -27,15 +32,35 @@ def disk(center, normal, radius, n):
 
 @strict
 def sphere(d, z, radius):
-    """A sphere at distance d, its centre z above the receiver's plane: whole, cut by the horizon (Snyder 1996), or below."""
+    """A sphere at distance d, its centre z above the receiver's plane: whole, cut by the horizon (Snyder 1996), its top alone
+    above the horizon, or below."""
     if z >= radius:
         return math.pi * radius * radius * z / (d * d * d)
     if z <= -radius or d <= radius:
         return 0.0
+    across, tangent = math.sqrt((d - z) * (d + z)), math.sqrt((d - radius) * (d + radius))
+    if z < 0:
+        top = math.asin((radius - z) * (radius + z) / (radius * across - z * tangent))
+        if top < SLIVER:
+            return sliver(top, math.atan2(z, across), math.atan2(radius, tangent))
     cosine, h2 = z / d, (d / radius) * (d / radius)
-    x = math.sqrt((d - radius) * (d + radius)) / radius
+    x = tangent / radius
     w = math.sqrt((radius - z) * (radius + z)) / radius
     return (cosine * math.atan2(w, -x * cosine) - x * w) / h2 + math.atan2(w, x)
+
+
+@strict
+def sliver(top, elevation, half_angle):
+    """What rises above the horizon of a cone of directions whose axis is below it: the sum over elevations p of sin p cos p times
+    the azimuths 2 f that the cone holds there, sin^2(f/2) = sin((half_angle + p - elevation)/2) sin((top - p)/2) /
+    (cos(elevation) cos p). With p = top (1 - t^2) the root at the top is gone."""
+    total = 0.0
+    for i in range(len(NODES)):
+        t = NODES[i]
+        p = top * (1 - t) * (1 + t)
+        square = math.sin((half_angle + p - elevation) / 2) * math.sin(top * t * t / 2) / (math.cos(elevation) * math.cos(p))
+        total += WEIGHTS[i] * t * math.sin(p) * math.cos(p) * math.asin(min(math.sqrt(square), 1.0))
+    return 8 * top * total
 
 
 @strict
