@@ -49,7 +49,8 @@ def ball(center, radius):
     "tube-light:points", "tube-light:horizon", "tube-light:upright", "disk-light:horizon", "disk-blocker:askew",
     "sphere-blocker", "sphere-blocker:disk", "sphere-blocker:sphere", "sphere-blocker:small", "sphere-blocker:low",
     "hard-tiny-solid-angle:angle", "hard-tiny-solid-angle:triangle-angle", "hard-tiny-solid-angle:disk-angle",
-    "hard-tiny-solid-angle:sphere-angle", "hard-approach:disk", "hard-approach:sphere", "hard-grazing:disk", "hard-grazing:setting",
+    "hard-tiny-solid-angle:sphere-angle",
+    "hard-approach:disk", "hard-approach:sphere", "hard-grazing:disk", "hard-grazing:setting",
     "two-zone-sphere", "two-zone-sphere:two-reflections", "emitting-cap:irradiance", "concentric-spheres:irradiance",
     "concentric-spheres:narrow", "cube-furnace:irradiance", "lit-floor-to-wall:points", "lit-floor-to-wall:screen",
 ])  # fmt: skip
