@@ -282,13 +282,15 @@ def test_certify_keeps_and_checks(root, capsys):
 
 
 def test_certify_says_what_it_cannot(root, capsys):
-    """Solid angles, which the reference engine does not cover: the reason, exit 3, and nothing written."""
-    path = root / "scenes/lamp-seen.toml"
-    scene = (root / "scenes/point-light.toml").read_text().partition("[film]")[0]
-    path.write_text(f'{scene}[film]\nkind = "points"\nquantity = "solid_angle"\npositions = [[0, 0, 0]]\n')
+    """A diffuse wall beside a point light, which the reference engine does not cover: the reason, exit 3, nothing written."""
+    path = root / "scenes/lit-wall.toml"
+    scene = (root / "scenes/point-light.toml").read_text().partition("[cases")[0].replace("max_bounces = 0", "max_bounces = 1")
+    corners = "[[2, -1, 0], [2, 1, 0], [2, 1, 1], [2, -1, 1]]"
+    wall = f'[[surface]]\nid = "wall"\nreflectance = 0.5\nshape = {{ type = "polygon", vertices = {corners} }}\n'
+    path.write_text(scene + wall)
     assert main(["certify", str(path)]) == 3
-    assert "not certified: lamp-seen: films of solid angle are not covered" in capsys.readouterr().out
-    assert not (root / "references/lamp-seen.csv").exists()
+    assert "not certified: lit-wall: " in capsys.readouterr().out
+    assert not (root / "references/lit-wall.csv").exists()
 
 
 def test_the_list_shows_scenes_and_methods(capsys, monkeypatch):

@@ -18,13 +18,9 @@ from lightproof.scene import Scene
 
 
 @cache
-def _run(script: Path) -> dict:
-    return runpy.run_path(str(script))
-
-
 def scenes_of(script: Path) -> tuple[str, ...]:
     """The ids of the scenes that a script serves."""
-    return tuple(_run(script).get("SCENES", (script.stem,)))
+    return tuple(runpy.run_path(str(script)).get("SCENES", (script.stem,)))
 
 
 def find(scene_id: str, folder: Path) -> Path | None:
@@ -33,8 +29,8 @@ def find(scene_id: str, folder: Path) -> Path | None:
 
 
 def values(script: Path, scene: Scene, elements: Iterable[int]) -> np.ndarray:
-    """(m,) Values of m film elements, in the film's unit."""
-    return np.array(_run(script)["values"](scene.to_table(), list(elements)))
+    """(m,) Values of m film elements, in the film's unit. The script runs anew: it sets the precision that all share in mpmath."""
+    return np.array(runpy.run_path(str(script))["values"](scene.to_table(), list(elements)))
 
 
 def derivation(script: Path) -> str:
