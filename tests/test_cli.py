@@ -282,7 +282,7 @@ def test_certify_keeps_and_checks(root, capsys):
 
 
 def test_certify_says_what_it_cannot(root, capsys):
-    """A diffuse wall beside a point light, which the reference engine does not cover: the reason, exit 3, nothing written."""
+    """A diffuse wall beside a point light, which the first engine does not cover: the reason, exit 3, nothing written."""
     path = root / "scenes/lit-wall.toml"
     scene = (root / "scenes/point-light.toml").read_text().partition("[cases")[0].replace("max_bounces = 0", "max_bounces = 1")
     corners = "[[2, -1, 0], [2, 1, 0], [2, 1, 1], [2, -1, 1]]"

@@ -29,7 +29,7 @@ def find(scene_id: str, folder: Path) -> Path | None:
 
 
 def values(script: Path, scene: Scene, elements: Iterable[int]) -> np.ndarray:
-    """(m,) Values of m film elements, in the film's unit. The script runs anew: it sets the precision that all share in mpmath."""
+    """(m,) Values of m film elements, in the film's unit. The script runs anew: it sets the precision that all of mpmath has."""
     return np.array(runpy.run_path(str(script))["values"](scene.to_table(), list(elements)))
 
 
