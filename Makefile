@@ -1,5 +1,5 @@
 # `make report`: set up, run the default suite, write the page. `make test`: set up, run the tests.
-# Python 3.11 or 3.13; choose one with PYTHON=..., which renderers to install with EXTRAS=... (mitsuba, cycles, pyrender, all),
+# Python 3.11 or 3.13; choose one with PYTHON=..., which renderers to install with EXTRAS=... (mitsuba, cycles, luxcore, radiance, pyrender, all),
 # what to run instead of the default suite with RUN='square-light --with mc-area'.
 
 PYTHON ?= $(shell for p in python3 python3.13 python3.11; do \
