@@ -1,0 +1,70 @@
+"""Scenes in the formats of other tools, to be opened and rendered by hand: one writer a file.
+
+A film of irradiance is exported as what `renderers.views` lays out for it: a diffuse receiver, seen from just above.
+"""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass
+from pathlib import Path
+
+from lightproof import radiometry
+from lightproof.renderers import views
+from lightproof.renderers.views import View
+from lightproof.scene import PointsFilm, Scene
+
+
+class CannotExport(ValueError):
+    """What the tool, or any picture, cannot hold of a scene: says what."""
+
+
+@dataclass(frozen=True)
+class Tool:
+    """`module` has write(scene, path), which writes the main file `path` and companions named after it beside it, or raises
+    CannotExport; `suffix` is that of the main file."""
+
+    module: str
+    suffix: str
+
+
+TOOLS = {
+    "mitsuba": Tool("lightproof.exporting.mitsuba", ".xml"),
+    "blender": Tool("lightproof.exporting.blender", ".blend"),
+    "pbrt": Tool("lightproof.exporting.pbrt", ".pbrt"),
+    "usd": Tool("lightproof.exporting.usd", ".usda"),
+}
+
+
+def write(scene: Scene, tool: str, path: Path) -> None:
+    """Write a scene for a tool of TOOLS. Raises CannotExport, OSError, and Unavailable where the tool itself has to write."""
+    importlib.import_module(TOOLS[tool].module).write(scene.tangible, path)
+
+
+def view(scene: Scene) -> View:
+    """The camera, with its receiver where the film is one of irradiance. Raises CannotExport where no picture is the film."""
+    if isinstance(scene.film, PointsFilm):
+        raise CannotExport("a film of points is no picture; choose a scene whose film is a plane or a camera")
+    reason = views.unsupported(scene)
+    if reason:
+        raise CannotExport(reason)
+    return views.views(scene)[0]
+
+
+def remarks(scene: Scene, path: Path) -> list[str]:
+    """For a comment in the main file `path`: what a picture holds, and the command that judges it."""
+    seen = view(scene)
+    (columns, rows), unit = seen.resolution, radiometry.QUANTITIES["radiance"].unit
+    judge = f"lightproof grade {path.stem}.exr --scene {scene.name}"
+    lines = [
+        f"Lightproof scene {scene.name}: {scene.title}. Metres, z up.",
+        f"Picture: {columns} x {rows} pixels, box filter; a pixel is the mean radiance over its square in {unit}, row 0 on top.",
+    ]
+    if seen.receiver:
+        lines += [
+            f"Seen is a diffuse receiver of reflectance rho = {seen.receiver.reflectance:g} that lies in the film, from above:"
+            " E = pi L / rho.",
+            "Columns run along the film's u; the top row is its far side, where v ends.",
+        ]
+        judge += " --quantity radiance"
+    return [*lines, f"Judge it with: {judge}"]
