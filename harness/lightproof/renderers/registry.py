@@ -9,13 +9,15 @@ OURS = "lightproof"  # the process of the in-house estimators
 
 @dataclass(frozen=True)
 class Entry:
-    """`target` is module:class; methods with the same `worker` share a process; `extra` is what pip has to install."""
+    """`target` is module:class; methods with the same `worker` share a process; `extra` is what pip has to install; `python` is
+    the path of the interpreter that the process runs under, empty for the harness's own."""
 
     name: str
     target: str
     worker: str
     extra: str = ""
     nightly: bool = False
+    python: str = ""
 
 
 def _ours(name: str, target: str, nightly: bool = False) -> Entry:
