@@ -2,7 +2,7 @@
 
 A scene may come from a file, from another process or from a notebook; in each case the same rule has to hold and the
 same message has to come out. So every field states its rule where it is declared, and `Checked` applies all of them
-whenever an object is made.
+whenever an object is made. Beside the rule stands what JSON Schema can say of it, for readers in other languages.
 """
 
 from __future__ import annotations
@@ -10,11 +10,12 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, ClassVar
 
 SHORTEST, FARTHEST = 1e-150, 1e150  # m: a binary64 holds the squares of all lengths between
 KEBAB_CASE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+VECTOR = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 
 
 class SceneError(ValueError):
@@ -34,7 +35,7 @@ class SceneError(ValueError):
 class Checked:
     """Base of frozen dataclasses whose fields carry a rule in their metadata."""
 
-    TAG: ClassVar[tuple[str, str]]
+    TAG: ClassVar[tuple[str, Any] | None] = None
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
@@ -51,7 +52,8 @@ class Checked:
     def to_table(self) -> dict[str, Any]:
         """The object as a scene file writes it: the class's own tag (`TAG`, such as ("type", "disk")), then the fields."""
         values = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self))
-        return {**dict([self.TAG]), **{name: _plain(value) for name, value in values if value is not None}}
+        tag = dict([self.TAG]) if self.TAG else {}
+        return {**tag, **{name: _plain(value) for name, value in values if value is not None}}
 
 
 def _plain(value: Any) -> Any:
@@ -64,9 +66,22 @@ def _plain(value: Any) -> Any:
             return value
 
 
-def rule(check: Callable[[Any], Any], default: Any = dataclasses.MISSING) -> Any:
-    """A dataclass field whose value is replaced by `check(value)`, which raises SceneError on a bad one."""
-    return dataclasses.field(default=default, metadata={"rule": check})
+def rule(check: Callable[[Any], Any], schema: dict[str, Any], default: Any = dataclasses.MISSING) -> Any:
+    """A dataclass field whose value is replaced by `check(value)`, which raises SceneError on a bad one; `schema` is that of
+    what it accepts."""
+    return dataclasses.field(default=default, metadata={"rule": check, "schema": schema})
+
+
+def only(table: Any, known: Sequence[str], required: Iterable[str]) -> None:
+    """Raises SceneError where a table is none, lacks a required field, or has one that nobody knows."""
+    if not isinstance(table, dict):
+        raise SceneError("", f"{shown(table)} is not a table")
+    for key in table:
+        if key not in known:
+            raise SceneError(shown(key)[1:-1], f"is not a field here; the fields are {', '.join(known)}")
+    for key in required:
+        if key not in table:
+            raise SceneError(key, "is missing; it must be given")
 
 
 def shown(value: Any) -> str:
@@ -100,7 +115,8 @@ def number(above: float = -math.inf, least: float = -math.inf, most: float = mat
             raise SceneError("", f"{value:g} is out of range; it must be {low}{high}")
         return value
 
-    return rule(check, default)
+    limits = {"exclusiveMinimum": above, "minimum": least, "maximum": most, "exclusiveMaximum": below}
+    return rule(check, {"type": "number", **{key: limit for key, limit in limits.items() if math.isfinite(limit)}}, default)
 
 
 def length() -> Any:
@@ -121,7 +137,7 @@ def to_vector(value: Any) -> tuple[float, float, float]:
 
 def vector(default: Any = dataclasses.MISSING) -> Any:
     """A field for a position [m]."""
-    return rule(to_vector, default)
+    return rule(to_vector, VECTOR, default)
 
 
 def to_direction(value: Any) -> tuple[float, float, float]:
@@ -134,7 +150,7 @@ def to_direction(value: Any) -> tuple[float, float, float]:
 
 def direction(default: Any = dataclasses.MISSING) -> Any:
     """A field for a direction of any length except zero."""
-    return rule(to_direction, default)
+    return rule(to_direction, VECTOR, default)
 
 
 def vectors(least: int, each: Callable[[Any], Any] = to_vector, default: Any = dataclasses.MISSING) -> Any:
@@ -147,7 +163,7 @@ def vectors(least: int, each: Callable[[Any], Any] = to_vector, default: Any = d
             raise SceneError("", f"{shown(value)} is not a list of at least {least} vectors [x, y, z]")
         return tuple(indexed(each, value))
 
-    return rule(check, default)
+    return rule(check, {"type": "array", "items": VECTOR, "minItems": least}, default)
 
 
 def indexed(check: Callable[[Any], Any], values: Any) -> list[Any]:
@@ -161,26 +177,23 @@ def indexed(check: Callable[[Any], Any], values: Any) -> list[Any]:
     return checked
 
 
-def choice(*accepted: Any, default: Any = dataclasses.MISSING) -> Any:
+def to_choice(value: Any, accepted: Sequence[str]) -> str:
+    """One of a few values."""
+    if not isinstance(value, str) or value not in accepted:
+        raise SceneError("", f"{shown(value)} is not accepted; give one of {', '.join(map(repr, accepted))}")
+    return value
+
+
+def choice(*accepted: str, default: Any = dataclasses.MISSING) -> Any:
     """A field that takes one of a few values."""
-
-    def check(value: Any) -> Any:
-        if not isinstance(value, str) or value not in accepted:
-            raise SceneError("", f"{shown(value)} is not accepted; give one of {', '.join(map(repr, accepted))}")
-        return value
-
-    return rule(check, default)
+    return rule(lambda value: to_choice(value, accepted), {"enum": list(accepted)}, default)
 
 
-def text(default: Any = dataclasses.MISSING) -> Any:
-    """A field for a line of text."""
-
-    def check(value: Any) -> str:
-        if not isinstance(value, str):
-            raise SceneError("", f"{shown(value)} is not text; give a string")
-        return value
-
-    return rule(check, default)
+def to_text(value: Any) -> str:
+    """A line of text, with nothing in it that a terminal would obey."""
+    if not isinstance(value, str) or not value.isprintable() or not value:
+        raise SceneError("", f"{shown(value)} is not a line of text")
+    return value
 
 
 def to_kebab(value: Any) -> str:
@@ -192,7 +205,7 @@ def to_kebab(value: Any) -> str:
 
 def identifier(default: Any = dataclasses.MISSING) -> Any:
     """A field for an id in kebab-case."""
-    return rule(to_kebab, default)
+    return rule(to_kebab, {"type": "string", "pattern": f"^{KEBAB_CASE.pattern}$"}, default)
 
 
 def to_count(value: Any, least: int = 0, most: int = 2**31 - 1) -> int:
@@ -210,4 +223,5 @@ def resolution(default: Any = dataclasses.MISSING) -> Any:
             raise SceneError("", f"{shown(value)} is not a resolution; give [columns, rows]")
         return tuple(indexed(lambda count: to_count(count, 1, 4096), value))
 
-    return rule(check, default)
+    count = {"type": "integer", "minimum": 1, "maximum": 4096}
+    return rule(check, {"type": "array", "items": count, "minItems": 2, "maxItems": 2}, default)

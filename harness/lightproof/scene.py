@@ -29,7 +29,7 @@ def _shape() -> Any:
             raise SceneError("", f"{checked.shown(value)} is not a shape; give one of {', '.join(geometry.SHAPES)}")
         return value
 
-    return checked.rule(check)
+    return checked.rule(check, {"$ref": "#/$defs/shape"})
 
 
 @dataclass(frozen=True)

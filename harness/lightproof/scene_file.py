@@ -62,12 +62,12 @@ def _parse(path: Path) -> dict[str, Any]:
 
 def from_table(table: dict[str, Any], scene_id: str, case: str = BASE) -> Scene:
     """A Scene from its table (as `Scene.to_table` gives it); raises SceneError."""
-    _only(table, TOP, required=("title", "max_bounces", "tolerance", "film"))
+    checked.only(table, TOP, required=("title", "max_bounces", "tolerance", "film"))
     read = Scene(
         id=scene_id,
         case=case,
-        title=_field(table, "title", _text),
-        tests=_field(table, "tests", _text, ""),
+        title=_field(table, "title", checked.to_text),
+        tests=_field(table, "tests", checked.to_text, ""),
         tags=_field(table, "tags", _tags, ()),
         lights=_items(table, "light", _light),
         surfaces=_items(table, "surface", lambda item: _build(scene.Surface, item, optional_tag=True)),
@@ -128,28 +128,11 @@ def _build(cls: type, item: Any, optional_tag: bool = False) -> Any:
     if optional_tag and item.get(tag, expected) != expected:
         raise SceneError(tag, f"{checked.shown(item[tag])} is not accepted; give {expected!r}")
     names = [field.name for field in fields(cls)]
-    _only(item, (tag, *names), required=[field.name for field in fields(cls) if field.default is MISSING])
+    checked.only(item, (tag, *names), required=[field.name for field in fields(cls) if field.default is MISSING])
     values = {key: item[key] for key in names if key in item}
     if "shape" in values:
         values["shape"] = _field(values, "shape", lambda shape: _build(_kind(shape, geometry.SHAPES, "type"), shape))
     return cls(**values)
-
-
-def _only(table: Any, known: tuple[str, ...], required: Any) -> None:
-    if not isinstance(table, dict):
-        raise SceneError("", f"{checked.shown(table)} is not a table")
-    for key in table:
-        if key not in known:
-            raise SceneError(checked.shown(key)[1:-1], f"is not a field here; the fields are {', '.join(known)}")
-    for key in required:
-        if key not in table:
-            raise SceneError(key, "is missing; it must be given")
-
-
-def _text(value: Any) -> str:
-    if not isinstance(value, str) or not value.isprintable() or not value:
-        raise SceneError("", f"{checked.shown(value)} is not a line of text")
-    return value
 
 
 def _positive(value: Any) -> float:
