@@ -13,7 +13,7 @@ LAYERS = [
     {"checked"},
     {"radiometry", "geometry", "statistics"},
     {"scene"},
-    {"scene_file"},
+    {"scene_file", "exr"},
     {"trial", "references", "films", "method", "sketch"},
     {"suite", "certify", "estimators"},
     {"renderers"},

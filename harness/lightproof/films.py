@@ -7,13 +7,17 @@ out. `variance` and `quantization` are there where the method knows them.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
+from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 
+from lightproof import exr
+from lightproof.exr import FilmError
 
-class FilmError(ValueError):
-    """A film that cannot be read or does not fit: says what, where and what would be right."""
+EXTRAS = ("variance", "quantization")
+PARTIAL = ".partial"  # what a film is called until it is whole
 
 
 def write(path: Path, grid: tuple[int, int], channels: Mapping[str, np.ndarray], header: Mapping[str, str]) -> None:
@@ -27,30 +31,38 @@ def write(path: Path, grid: tuple[int, int], channels: Mapping[str, np.ndarray],
         if name == "Y" and np.isfinite(planes[name]).all():
             planes["residual"] = (values - planes[name]).astype(np.float32)
     images = {name: np.ascontiguousarray(plane.reshape(grid)) for name, plane in planes.items()}
-    about = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, **header}
-    partial = path.with_suffix(".partial")
+    about = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, "lightproof": _version(), **header}
+    partial = path.with_suffix(PARTIAL)
     OpenEXR.File(about, images).write(str(partial))
     partial.rename(path)
 
 
-def read(path: Path) -> tuple[tuple[int, int], dict[str, np.ndarray], dict[str, str]]:
-    """Grid (rows, columns), channels as (n,) float64 with the residual added back to Y, and the header's strings.
+def read(path: Path, channel: str = "") -> tuple[tuple[int, int], dict[str, np.ndarray], dict[str, str]]:
+    """Grid (rows, columns), channels as (n,) float64 and the header's strings, of a film or of anybody's picture.
 
-    Raises FilmError on a file that is missing, truncated or no OpenEXR.
+    Y is the light: the channel Y with its residual added back, or the mean of R, G and B, or what `channel` names (see
+    `exr.Image.light`). Half floats are good to half a step, which `quantization` says. Raises FilmError where the file is
+    missing, truncated or no flat OpenEXR image, or where its light is not to be found.
     """
-    import OpenEXR
+    image = exr.read(path)
+    names = image.light(channel)
+    chosen = [_numbers(image, name) for name in names]
+    found = {"Y": np.mean(chosen, axis=0)}
+    if names == ("Y",):
+        found["Y"] = found["Y"] + image.channels.get("residual", 0.0)
+        found |= {name: _numbers(image, name) for name in EXTRAS if name in image.channels}
+    steps = np.mean([np.broadcast_to(exr.half_step(image.channels[name]), found["Y"].shape) for name in names], axis=0)
+    if steps.any():
+        found["quantization"] = steps + found.get("quantization", 0.0)
+    return found["Y"].shape, {name: values.ravel() for name, values in found.items()}, dict(image.header)
 
-    if not path.is_file():
-        raise FilmError(f"{path}: there is no such file; give the path of an OpenEXR image")
-    try:
-        with OpenEXR.File(str(path), separate_channels=True) as file:
-            header = {key: value for key, value in file.header().items() if isinstance(value, str)}
-            planes = {name: np.array(channel.pixels) for name, channel in file.channels().items()}
-    except Exception as error:  # the binding raises bare RuntimeError, or a TypeError of its own, on foreign bytes
-        raise FilmError(f"{path}: is no complete OpenEXR image ({error}); it may be truncated, write it again") from None
-    if "Y" not in planes:
-        raise FilmError(f"{path}: has no channel Y; its channels are {', '.join(sorted(planes)) or 'none'}")
-    grid = planes["Y"].shape
-    channels = {name: plane.astype(np.float64).ravel() for name, plane in planes.items()}
-    channels["Y"] = channels["Y"] + channels.pop("residual", 0.0)
-    return grid, channels, header
+
+def _numbers(image: exr.Image, name: str) -> np.ndarray:
+    if image.channels[name].dtype.kind != "f":
+        raise FilmError(f"{image.path}: channel {name} holds whole numbers; light is half or float")
+    return image.channels[name].astype(float)
+
+
+@cache
+def _version() -> str:
+    return metadata.version("lightproof")
