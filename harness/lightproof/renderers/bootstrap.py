@@ -9,15 +9,14 @@ from importlib import util
 from pathlib import Path
 
 OLDEST = (3, 11)
-NEEDED = ("numpy", "OpenEXR")
 
 
 def complaint() -> str:
     """What keeps a worker from running under this interpreter, and what to do about it; else empty."""
     if sys.version_info < OLDEST:
         return f"{sys.executable} is Python {sys.version.split()[0]}; give one of {'.'.join(map(str, OLDEST))} or later"
-    missing = [name for name in NEEDED if util.find_spec(name) is None]
-    return f"{sys.executable} lacks {' and '.join(missing)}: {sys.executable} -m pip install {' '.join(missing)}" if missing else ""
+    missing = not all(map(util.find_spec, ("numpy", "OpenEXR")))
+    return f"{sys.executable} lacks numpy or OpenEXR: {sys.executable} -m pip install numpy OpenEXR" if missing else ""
 
 
 def package() -> None:

@@ -1,4 +1,4 @@
-"""Mitsuba 3: the vectorised LLVM variant, or the scalar one by the option `mitsuba/scalar`.
+"""Mitsuba 3, in the configurations of mitsuba_configurations.py.
 
 Its units are radiometric (radiance, intensity, irradiance, per channel) and its rectangles, disks, spheres and cylinders
 are analytic; like a scene's they emit and reflect on the front only.
@@ -17,13 +17,15 @@ import numpy as np
 
 from lightproof.geometry import Sphere
 from lightproof.method import Method, Rendering
-from lightproof.renderers import importing, mitsuba_shapes, transport, views
+from lightproof.renderers import importing, mitsuba_configurations, mitsuba_shapes, options, transport, views
+from lightproof.renderers.mitsuba_configurations import CONFIGURATIONS, combines, integrator
 from lightproof.renderers.views import View
 from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, PointLight, Scene, Surface
 
 PASS = 1024  # samples per pass: the film adds up in float32 and is off by 5e-5 after 4,096 samples
 WAVEFRONT = 2**24  # paths at a time
 SKY_ROWS = 2**11  # of the map of half a sky, whose horizon is blurred over one row
+BAND = 400, 700  # nm: a flat band, over which spectral radiance is spread and the spectral variant's film adds up
 FAR = 1e4  # m: Mitsuba's own far clip, beyond which only scenes seen from farther away go
 LLVM = "karellen-llvm-core"
 
@@ -33,7 +35,8 @@ class Mitsuba(Method):
 
     def __init__(self, name: str, threads: int):
         super().__init__(name, threads)
-        self.variant = "scalar_rgb" if name.endswith("/scalar") else "llvm_ad_mono"
+        self.configuration = options.chosen(name, CONFIGURATIONS)
+        self.variant = self.configuration.variant
 
     def open(self) -> None:
         if self.variant.startswith("llvm"):
@@ -49,18 +52,21 @@ class Mitsuba(Method):
         return self.mi.__version__
 
     def settings(self) -> Mapping[str, Any]:
-        return {"variant": self.variant, "integrator": self.integrator, "sampler": "multijitter", "filter": "box",
-                "samples_per_pass": PASS}
+        return {"variant": self.variant, "integrator": self.integrator, "sampler": self.configuration.sampler, "filter": "box",
+                "film": self._film()["type"], "samples_per_pass": PASS}
 
     def unsupported(self, scene: Scene) -> str | None:
         for light in scene.lights:
             if not isinstance(light, AreaLight | PointLight | DirectionalLight | Environment):
                 return "Mitsuba is not given sun discs or overcast skies yet"
-        return transport.unsupported(scene) or views.unsupported(scene)
+            if self.spectral and getattr(light, "extent", "sphere") == "upper":
+                return "Mitsuba's spectral sky map has the colour of daylight, and no flat spectrum"
+        search = mitsuba_configurations.unsupported(scene, self.configuration.search)
+        return search or transport.unsupported(scene) or views.unsupported(scene)
 
     def caveat(self, scene: Scene) -> str:
         inward = [surface for surface in scene.surfaces if surface.radiance and surface.side == "inside"]
-        if self.integrator["type"] == "path" and any(isinstance(surface.shape, Sphere) for surface in inward):
+        if combines(self.integrator) and any(isinstance(surface.shape, Sphere) for surface in inward):
             return ("Mitsuba's multiple importance sampling is biased inside an analytic sphere that emits: emitter sampling"
                     " alone and BSDF sampling alone are right, their combination is too bright, more so far from the origin.")
         return ""
@@ -68,7 +74,8 @@ class Mitsuba(Method):
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()
         self.views = views.views(scene)
-        self.integrator = integrator(scene)
+        self.integrator = integrator(scene, self.configuration.search)
+        self.sampler = self.mi.load_dict({"type": self.configuration.sampler})
         world = {light.id: self._light(light) for light in scene.lights}
         world |= {surface.id: self._surface(surface) for surface in scene.surfaces}
         self.scenes = [self.mi.load_dict(world | self._view(view)) for view in self.views]
@@ -77,7 +84,7 @@ class Mitsuba(Method):
     def render(self, samples: int, seed: int) -> Rendering:
         columns, rows = self.views[0].resolution
         passes = math.ceil(samples / max(1, min(PASS, WAVEFRONT // (columns * rows))))
-        per_pass = strata(math.ceil(samples / passes))
+        per_pass = self._strata(math.ceil(samples / passes))
         seeds = np.random.SeedSequence(seed).generate_state(passes * len(self.views)).reshape(-1, passes)
         self.dr.kernel_history_clear()
         film = [view.elements(np.mean([self._image(scene, per_pass, each) for each in row], axis=0))
@@ -87,21 +94,30 @@ class Mitsuba(Method):
     def _image(self, scene: Any, samples: int, seed: int) -> np.ndarray:
         return np.array(self.mi.render(scene, spp=samples, seed=int(seed)), float)[:, :, 0]
 
+    def _strata(self, samples: int) -> int:
+        """What the sampler makes of a number of samples: a square, a near square, a power of two."""
+        self.sampler.set_sample_count(samples)
+        return self.sampler.sample_count()
+
     def _compiling(self) -> float:
         """Seconds spent on kernels since the history was cleared."""
         return sum(kernel.get("codegen_time", 0) + kernel.get("backend_time", 0) for kernel in self.dr.kernel_history()) / 1e3
 
     def _view(self, view: View) -> dict[str, Any]:
         columns, rows = view.resolution
-        film = {"type": "hdrfilm", "width": columns, "height": rows, "rfilter": {"type": "box"}, "component_format": "float32",
-                "pixel_format": "rgb" if self.variant.endswith("rgb") else "luminance"}
+        film = {"width": columns, "height": rows, "rfilter": {"type": "box"}, "component_format": "float32", **self._film()}
         clip = {"near_clip": view.near, "far_clip": max(FAR, 1e3 * view.near)}
-        camera = {**self._lens(view), **clip, "film": film, "sampler": {"type": "multijitter"}}
+        camera = {**self._lens(view), **clip, "film": film, "sampler": {"type": self.configuration.sampler}}
         built = {"type": "scene", "integrator": self.integrator, "film-camera": camera}
         if view.receiver:
             content = {"bsdf": diffuse(view.receiver.reflectance)}
             built["film-receiver"] = mitsuba_shapes.rectangle(self.mi, view.receiver.corners, content)
         return built
+
+    def _film(self) -> dict[str, Any]:
+        if self.spectral:
+            return {"type": "specfilm", "band": {"type": "spectrum", "value": [(end, 1.0) for end in BAND]}}
+        return {"type": "hdrfilm", "pixel_format": "rgb" if self.variant.endswith("rgb") else "luminance"}
 
     def _lens(self, view: View) -> dict[str, Any]:
         columns, rows = view.resolution
@@ -115,13 +131,13 @@ class Mitsuba(Method):
     def _light(self, light: Light) -> Any:
         match light:
             case AreaLight():
-                return mitsuba_shapes.build(self.mi, light.shape, {"bsdf": diffuse(0), "emitter": glow(light.radiance)})
+                return mitsuba_shapes.build(self.mi, light.shape, {"bsdf": diffuse(0), "emitter": self._glow(light.radiance)})
             case PointLight():
-                return {"type": "point", "position": list(light.position), "intensity": light.intensity}
+                return {"type": "point", "position": list(light.position), "intensity": self._spectrum(light.intensity)}
             case DirectionalLight():
-                return {"type": "directional", "direction": list(light.direction), "irradiance": light.irradiance}
+                return {"type": "directional", "direction": list(light.direction), "irradiance": self._spectrum(light.irradiance)}
             case Environment(extent="sphere"):
-                return {"type": "constant", "radiance": light.radiance}
+                return {"type": "constant", "radiance": self._spectrum(light.radiance)}
             case Environment():
                 return self._half_sky(light.radiance)
 
@@ -132,35 +148,25 @@ class Mitsuba(Method):
         return {"type": "envmap", "bitmap": self.mi.Bitmap(rows), "to_world": upright}
 
     def _surface(self, surface: Surface) -> Any:
-        content = {"bsdf": diffuse(surface.reflectance)} | ({"emitter": glow(surface.radiance)} if surface.radiance else {})
+        content = {"bsdf": diffuse(surface.reflectance)} | ({"emitter": self._glow(surface.radiance)} if surface.radiance else {})
         return mitsuba_shapes.build(self.mi, surface.shape, content, surface.side == "inside")
+
+    def _glow(self, radiance: float) -> dict[str, Any]:
+        return {"type": "area", "radiance": self._spectrum(radiance)}
+
+    def _spectrum(self, value: float) -> Any:
+        """A light's value; as a spectrum, its density [1/nm] over the band that the film adds up."""
+        return {"type": "uniform", "value": value / (BAND[1] - BAND[0])} if self.spectral else value
+
+    @property
+    def spectral(self) -> bool:
+        """Whether light has wavelengths."""
+        return self.variant.endswith("spectral")
 
 
 def diffuse(reflectance: float) -> dict[str, Any]:
     """A Lambertian front; the back is black."""
     return {"type": "diffuse", "reflectance": float(reflectance)}
-
-
-def glow(radiance: float) -> dict[str, Any]:
-    """A front that emits."""
-    return {"type": "area", "radiance": radiance}
-
-
-def integrator(scene: Scene) -> dict[str, Any]:
-    """Emitters alone: the path tracer cut at its first vertex. One reflection: the direct integrator, sampling emitters,
-    or directions where light comes from all of them. More: the path tracer, without Russian roulette."""
-    depth = transport.edges(scene)
-    if depth != 2:
-        return {"type": "path", "max_depth": depth, "rr_depth": depth + 1}
-    emitters = [*scene.lights, *(surface for surface in scene.surfaces if surface.radiance)]
-    around = [isinstance(emitter, Environment) or getattr(emitter, "side", "") == "inside" for emitter in emitters] or [True]
-    return {"type": "direct", "emitter_samples": int(not all(around)), "bsdf_samples": int(any(around))}
-
-
-def strata(samples: int) -> int:
-    """The number of strata, a near square, that the multijittered sampler makes of `samples`."""
-    rows = math.isqrt(samples)
-    return rows * math.ceil(samples / rows)
 
 
 def llvm_library() -> str:

@@ -24,6 +24,11 @@ def _ours(name: str, target: str, nightly: bool = False) -> Entry:
     return Entry(name, f"lightproof.estimators.{target}", worker=OURS, nightly=nightly)
 
 
+def _mitsuba(option: str, worker: str = "mitsuba") -> Entry:
+    """A configuration; what is compiled for a variant of its own lives in a process of its own."""
+    return Entry(f"mitsuba/{option}", "lightproof.renderers.mitsuba:Mitsuba", worker, extra="mitsuba", nightly=True)
+
+
 METHODS = {
     entry.name: entry
     for entry in (
@@ -36,8 +41,13 @@ METHODS = {
         _ours("mc-cosine", "mc_cosine:McCosine"),
         _ours("path", "path:Path"),
         Entry("mitsuba", "lightproof.renderers.mitsuba:Mitsuba", worker="mitsuba", extra="mitsuba"),
-        Entry("mitsuba/scalar", "lightproof.renderers.mitsuba:Mitsuba", worker="mitsuba-scalar", extra="mitsuba", nightly=True),
+        _mitsuba("scalar", worker="mitsuba-scalar"),
+        _mitsuba("spectral", worker="mitsuba-spectral"),
+        *map(_mitsuba, ("independent", "stratified", "orthogonal", "sobol", "emitter-sampling", "mis", "path")),
         Entry("cycles", "lightproof.renderers.cycles:Cycles", worker="cycles", extra="cycles"),
+        Entry("luxcore", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore"),
+        Entry("luxcore/random", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
+        Entry("luxcore/bidirectional", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
         Entry("pyrender", "lightproof.renderers.pyrender:Pyrender", worker="pyrender", extra="pyrender"),
     )
 }
