@@ -8,8 +8,11 @@ from __future__ import annotations
 import importlib
 from dataclasses import dataclass
 from pathlib import Path
+from types import UnionType
+from typing import Any
 
-from lightproof import radiometry
+import numpy as np
+
 from lightproof.renderers import views
 from lightproof.renderers.views import View
 from lightproof.scene import PointsFilm, Scene
@@ -54,11 +57,11 @@ def view(scene: Scene) -> View:
 def remarks(scene: Scene, path: Path) -> list[str]:
     """For a comment in the main file `path`: what a picture holds, and the command that judges it."""
     seen = view(scene)
-    (columns, rows), unit = seen.resolution, radiometry.QUANTITIES["radiance"].unit
+    columns, rows = seen.resolution
     judge = f"lightproof grade {path.stem}.exr --scene {scene.name}"
     lines = [
         f"Lightproof scene {scene.name}: {scene.title}. Metres, z up.",
-        f"Picture: {columns} x {rows} pixels, box filter; a pixel is the mean radiance over its square in {unit}, row 0 on top.",
+        f"Picture: {columns} x {rows} pixels, box filter; a pixel is the mean radiance [W/(m2 sr)] over its square, row 0 on top.",
     ]
     if seen.receiver:
         lines += [
@@ -68,3 +71,15 @@ def remarks(scene: Scene, path: Path) -> list[str]:
         ]
         judge += " --quantity radiance"
     return [*lines, f"Judge it with: {judge}"]
+
+
+def numbers(values: Any) -> str:
+    """Numbers of an array in row-major order, as text that reads back to the same binary64."""
+    return " ".join(repr(float(value)) for value in np.ravel(values))
+
+
+def refuse(scene: Scene, kinds: type | UnionType, tool: str) -> None:
+    """Raise CannotExport for the first light of the scene that is none of the `kinds` a writer knows how to say."""
+    for light in scene.lights:
+        if not isinstance(light, kinds):
+            raise CannotExport(f"light '{light.id}': the export for {tool} has no {type(light).__name__} yet")
