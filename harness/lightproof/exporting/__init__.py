@@ -61,7 +61,7 @@ def remarks(scene: Scene, path: Path) -> list[str]:
     judge = f"lightproof grade {path.stem}.exr --scene {scene.name}"
     lines = [
         f"Lightproof scene {scene.name}: {scene.title}. Metres, z up.",
-        f"Picture: {columns} x {rows} pixels, box filter; a pixel is the mean radiance [W/(m2 sr)] over its square, row 0 on top.",
+        f"Picture: {columns} x {rows} pixels, box filter; each the mean radiance [W/(m2 sr)] over its square, row 0 on top.",
     ]
     if seen.receiver:
         lines += [
