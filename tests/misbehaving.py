@@ -5,13 +5,17 @@ It knows the exact light of scenes/point-light.toml, and adds noise to it unless
 
 from __future__ import annotations
 
+import ctypes
 import fcntl
+import json
 import os
 import signal
 import stat
 import subprocess
 import sys
+import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +45,10 @@ class Misbehaving(Method):
             raise Unavailable("pip install 'lightproof[misbehaving]'")
         if self.fault == "exits-at-once":
             os._exit(7)
+        if self.fault == "hangs-before":
+            _hangs(self, None)
+        if self.fault == "starts-slowly":
+            time.sleep(1)
         if self.fault == "ignores-sigterm":
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
 
@@ -78,7 +86,15 @@ def _calls_exit(method: Misbehaving, film: np.ndarray) -> None:
 
 
 def _segfaults(method: Misbehaving, film: np.ndarray) -> None:
-    os.kill(os.getpid(), signal.SIGSEGV)
+    ctypes.string_at(0)
+
+
+def _sends_itself(number: signal.Signals) -> Callable:
+    def send(method: Misbehaving, film: np.ndarray) -> None:
+        print("the end is near")
+        os.kill(os.getpid(), number)
+
+    return send
 
 
 def _crashes_once(method: Misbehaving, film: np.ndarray) -> np.ndarray:
@@ -94,9 +110,17 @@ def _hangs(method: Misbehaving, film: np.ndarray) -> None:
     time.sleep(3600)
 
 
-def _floods(method: Misbehaving, film: np.ndarray) -> np.ndarray:
+def _floods(method: Misbehaving, film: np.ndarray) -> None:
     while True:
-        print("light " * 10_000)
+        for stream in (sys.stdout, sys.stderr):
+            print("light " * 10_000, file=stream)
+
+
+def _fills_the_disk(method: Misbehaving, film: np.ndarray) -> None:
+    print("saving every path")
+    with tempfile.TemporaryFile() as scratch:
+        while True:
+            scratch.write(bytes(1 << 16))
 
 
 def _closes_pipe(method: Misbehaving, film: np.ndarray) -> None:
@@ -104,19 +128,24 @@ def _closes_pipe(method: Misbehaving, film: np.ndarray) -> None:
     time.sleep(3600)
 
 
+def _answers(line: bytes) -> None:
+    for fd in filter(_is_pipe_to_write, range(3, 64)):
+        os.write(fd, line)
+
+
 def _speaks_nonsense(method: Misbehaving, film: np.ndarray) -> np.ndarray:
-    for fd in range(3, 64):
-        try:
-            os.write(fd, b"100% done\n")
-        except OSError:
-            continue
+    _answers(b"100% done\n")
+    return film
+
+
+def _answers_late(method: Misbehaving, film: np.ndarray) -> np.ndarray:
+    _answers(b'{"id": 1, "error": "out of photons"}\n')
     return film
 
 
 def _drones_on(method: Misbehaving, film: np.ndarray) -> None:
     while True:
-        for fd in filter(_is_pipe_to_write, range(3, 64)):
-            os.write(fd, b"light " * 100)
+        _answers(b"light " * 100)
 
 
 def _is_pipe_to_write(fd: int) -> bool:
@@ -132,21 +161,48 @@ def _is_slow(method: Misbehaving, film: np.ndarray) -> np.ndarray:
 
 
 def _child(method: Misbehaving, film: np.ndarray) -> np.ndarray:
-    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(3600)"], start_new_session=True)
-    Path(os.environ["MISBEHAVING_FLAG"]).write_text(str(child.pid))
+    subprocess.Popen(["sleep", "3600"], start_new_session=True)
     return film
 
 
-def _half_an_image(method: Misbehaving, film: np.ndarray) -> np.ndarray:
-    whole = films.write
+def _writes(change: Callable) -> Callable:
+    """What `change(write, path, grid, channels, header)` makes of the next film that is written."""
 
-    def write_half(path: Path, *arguments: object) -> None:
-        whole(path, *arguments)
-        path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-        films.write = whole
+    def patched(method: Misbehaving, film: np.ndarray) -> np.ndarray:
+        write = films.write
 
-    films.write = write_half
-    return film
+        def write_once(*arguments: object) -> None:
+            films.write = write
+            change(write, *arguments)
+
+        films.write = write_once
+        return film
+
+    return patched
+
+
+def _half_an_image(write: Callable, path: Path, *arguments: object) -> None:
+    write(path, *arguments)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def _another_size(write: Callable, path: Path, grid: tuple, channels: dict, header: dict) -> None:
+    write(path, (1, 2), {"Y": np.ones(2)}, header)
+
+
+def _another_scene(write: Callable, path: Path, grid: tuple, channels: dict, header: dict) -> None:
+    write(path, grid, channels, {**header, "digest": "\x1b[2J0123"})
+
+
+def _hangs_after(write: Callable, *arguments: object) -> None:
+    write(*arguments)
+    _hangs(None, None)
+
+
+def _answers_twice(write: Callable, *arguments: object) -> None:
+    """The third request of a fresh worker answered, before the worker answers it."""
+    write(*arguments)
+    _answers(json.dumps({"id": 3, "samples": 64, "seconds": {}, "peak_memory_mb": 1.0}).encode() + b"\n")
 
 
 def _set(element: int, value: float):
@@ -162,16 +218,26 @@ FAULTS = {
     "exits-mid-job": _exits,
     "calls-exit": _calls_exit,
     "segfaults": _segfaults,
+    "killed": _sends_itself(signal.SIGKILL),
+    "dies-of-an-odd-signal": _sends_itself(signal.SIGRTMIN + 1),
+    "stops": _sends_itself(signal.SIGSTOP),
     "crashes-once": _crashes_once,
     "hangs": _hangs,
     "slow": _is_slow,
     "ignores-sigterm": _hangs,
     "floods": _floods,
+    "fills-the-disk": _fills_the_disk,
     "closes-pipe": _closes_pipe,
     "speaks-nonsense": _speaks_nonsense,
     "drones-on": _drones_on,
+    "answers-late": _answers_late,
+    "answers-twice": _writes(_answers_twice),
+    "hangs-after": _writes(_hangs_after),
     "leaves-a-child": _child,
-    "writes-half-an-image": _half_an_image,
+    "writes-nothing": _writes(lambda *arguments: None),
+    "writes-half-an-image": _writes(_half_an_image),
+    "writes-another-size": _writes(_another_size),
+    "writes-another-scene": _writes(_another_scene),
     "nan": _set(3, np.nan),
     "infinite": _set(4, np.inf),
     "negative": _set(5, -1.0),

@@ -111,13 +111,19 @@ class Pool:
             about = self.open(entry)
             prepared = self._prepare(entry, scene)
             film.parent.mkdir(parents=True, exist_ok=True)
+            film.unlink(missing_ok=True)
             answer = self._ask(entry, "render", timeout, samples=trial.samples, seed=trial.seed, film=str(film))
+            if "unsupported" in answer:
+                raise Unsupported(plain(answer["unsupported"]))
             return self._filled(trial, about, prepared, answer, read_film(film, scene))
         except (Unavailable, Unsupported) as reason:
             return Result(trial, Status.UNSUPPORTED, threads=self.threads, message=str(reason))
         except (MethodFailed, FilmError, OSError) as error:
             self._prepared.pop(entry.name, None)
-            return self._failed(trial, str(error))
+            return self._failed(trial, f"{plain(str(error))}{self._last_words(entry)}")
+        finally:
+            film.with_suffix(films.PARTIAL).unlink(missing_ok=True)
+            self._thin_out(entry)
 
     def _filled(self, trial: Trial, about: About, prepared: Preparation, answer: Mapping[str, Any],
                 channels: Mapping[str, np.ndarray]) -> Result:
@@ -153,9 +159,9 @@ class Pool:
         return self._prepared[entry.name]
 
     def _ask(self, entry: Entry, op: str, timeout: float, **arguments: Any) -> dict[str, Any]:
-        if entry.worker not in self._workers:
-            self._workers[entry.worker] = Worker(self.threads, self._file_limit)
         try:
+            if entry.worker not in self._workers:
+                self._workers[entry.worker] = Worker(self.threads, self._file_limit, entry.python)
             answer = self._workers[entry.worker].ask(op, timeout, method=entry.name, **arguments)
         except WorkerDied as error:
             self._discard(entry.worker)
@@ -164,8 +170,18 @@ class Pool:
             raise MethodFailed(f"while {DOING[op]}: {plain(answer['error'])}")
         return answer
 
+    def _last_words(self, entry: Entry) -> str:
+        """What a renderer said before it failed, if anything."""
+        return self._workers[entry.worker].last_words() if entry.worker in self._workers else ""
+
+    def _thin_out(self, entry: Entry) -> None:
+        """Replace a worker that leaves processes behind before they are too many."""
+        if entry.worker in self._workers and self._workers[entry.worker].crowded:
+            self._discard(entry.worker)
+
     def _discard(self, family: str) -> None:
-        self._workers.pop(family).close()
+        if family in self._workers:
+            self._workers.pop(family).close()
         for name in self._opened.pop(family, {}):
             self._prepared.pop(name, None)
 

@@ -12,14 +12,19 @@ import sys
 import tempfile
 import time
 import uuid
+from pathlib import Path
 from typing import Any
 
 import psutil
 
+BOOTSTRAP = Path(__file__).with_name("bootstrap.py")
 MARK = "LIGHTPROOF_WORKER"
 LARGEST_FILE = 1 << 29
+LONGEST_ANSWER = 1 << 20
+MOST_CHILDREN = 16
 POLL = 0.2
 QUOTED_LINES = 3
+SILENCE = "; it wrote nothing"
 LONGEST_LINE = 400
 
 
@@ -37,64 +42,108 @@ def plain(text: str) -> str:
     return line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]}..."
 
 
+def ending(status: int) -> str:
+    """How a process ended, by the status that `subprocess` gives."""
+    if status >= 0:
+        return f"exited with status {status}"
+    names = {number.value: number.name for number in signal.Signals}
+    killer = names.get(-status, f"signal {-status}")
+    return f"was killed by {killer}{' (out of memory?)' if killer == 'SIGKILL' else ''}"
+
+
 class Worker:
     """One child process that answers one request at a time.
 
     Start it from a thread that lasts: the kernel kills it when that thread ends. What it prints goes to a file that is
-    emptied before each request and cannot grow beyond `file_limit` [bytes], as no file of the worker's can.
+    emptied before each request and cannot grow beyond `file_limit` [bytes], as no file of the worker's can. It runs under the
+    interpreter `python` (a path), by default the harness's own; raises WorkerDied where there is none.
     """
 
-    def __init__(self, threads: int, file_limit: int = LARGEST_FILE):
+    def __init__(self, threads: int, file_limit: int = LARGEST_FILE, python: str = ""):
         self._mark = uuid.uuid4().hex
         self._log = tempfile.TemporaryFile("ab+")  # noqa: SIM115 - lives as long as the worker
         self._buffer = b""
+        self._asked = 0
         requests, self._requests = os.pipe()
         self._answers, answers = os.pipe()
-        command = [sys.executable, "-u", "-m", "lightproof.renderers.worker"]
+        command = [python or sys.executable, "-u", str(BOOTSTRAP)]
         numbers = (requests, answers, os.getpid(), file_limit)
-        self._process = subprocess.Popen(
-            [*command, *map(str, numbers)],
-            pass_fds=(requests, answers),
-            stdin=subprocess.DEVNULL,
-            stdout=self._log,
-            stderr=self._log,
-            start_new_session=True,
-            env={**os.environ, "OMP_NUM_THREADS": str(threads), MARK: self._mark},
-        )
-        os.close(requests)
-        os.close(answers)
+        try:
+            self._process = subprocess.Popen(
+                [*command, *map(str, numbers)],
+                pass_fds=(requests, answers),
+                stdin=subprocess.DEVNULL,
+                stdout=self._log,
+                stderr=self._log,
+                start_new_session=True,
+                env={**os.environ, "OMP_NUM_THREADS": str(threads), MARK: self._mark},
+            )
+        except OSError as error:
+            self._release()
+            raise WorkerDied(f"{python} cannot be run ({error.strerror}); give the path of a Python interpreter") from None
+        finally:
+            os.close(requests)
+            os.close(answers)
+        os.set_blocking(self._requests, False)
 
     def ask(self, op: str, timeout: float, **arguments: Any) -> dict[str, Any]:
         """The answer to one request within `timeout` [s]. Raises WorkerDied; the worker is closed then."""
         self._log.truncate(0)
-        try:
-            with contextlib.suppress(BrokenPipeError):
-                os.write(self._requests, json.dumps({"op": op, **arguments}).encode() + b"\n")
-            return self._answer(timeout)
-        except WorkerDied:
-            self.close()
-            raise
-
-    def _answer(self, timeout: float) -> dict[str, Any]:
+        self._asked += 1
         deadline = time.monotonic() + timeout
+        try:
+            self._send(json.dumps({"id": self._asked, "op": op, **arguments}).encode() + b"\n", deadline)
+            return self._answer(deadline)
+        except WorkerTimeout:
+            words = self.last_words()
+            self.close()
+            raise WorkerTimeout(f"no answer within {timeout:.3g} s{words or SILENCE}") from None
+        except WorkerDied as error:
+            words = self.last_words()
+            self.close()
+            raise WorkerDied(f"{error}{words or SILENCE}") from None
+
+    def _send(self, line: bytes, deadline: float) -> None:
+        """Write a request; a worker that does not read has until the deadline, one that has ended is told of by its answer."""
+        with contextlib.suppress(BrokenPipeError):
+            while line:
+                if select.select([], [self._requests], [], self._patience(deadline))[1]:
+                    line = line[os.write(self._requests, line):]
+
+    def _answer(self, deadline: float) -> dict[str, Any]:
+        """The answer to the last request; what comes late, or twice, to one before it is passed over."""
+        while True:
+            line = self._line(deadline)
+            try:
+                answer = json.loads(line)
+                number = answer.pop("id")
+            except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+                raise WorkerDied(f"it wrote {line[:80]!r} into the harness's pipe, which is no answer") from None
+            if number == self._asked:
+                return answer
+
+    def _line(self, deadline: float) -> bytes:
+        """The next line from the worker."""
         while b"\n" not in self._buffer:
-            left = deadline - time.monotonic()
-            if left < 0:
-                raise WorkerTimeout(f"no answer within {timeout:.3g} s{self._last_words()}")
-            if select.select([self._answers], [], [], min(POLL, left))[0]:
+            if len(self._buffer) > LONGEST_ANSWER:
+                raise WorkerDied(f"it wrote {self._buffer[:40]!r} and so on into the harness's pipe, without end")
+            if select.select([self._answers], [], [], self._patience(deadline))[0]:
                 self._read()
             elif self._process.poll() is not None:
-                raise WorkerDied(f"{self._ending()}{self._last_words()}")
+                raise WorkerDied(self._ending())
         line, _, self._buffer = self._buffer.partition(b"\n")
-        try:
-            return json.loads(line)
-        except ValueError:
-            raise WorkerDied(f"it wrote {line[:80]!r} into the harness's pipe, which is no answer") from None
+        return line
+
+    def _patience(self, deadline: float) -> float:
+        left = deadline - time.monotonic()
+        if left < 0:
+            raise WorkerTimeout
+        return min(POLL, left)
 
     def _read(self) -> None:
         chunk = os.read(self._answers, 1 << 16)
         if not chunk:
-            raise WorkerDied(f"{self._ending()}{self._last_words()}")
+            raise WorkerDied(self._ending())
         self._buffer += chunk
 
     def _ending(self) -> str:
@@ -102,15 +151,22 @@ class Worker:
             status = self._process.wait(timeout=1)
         except subprocess.TimeoutExpired:
             return "its process closed the harness's pipe"
-        if status < 0:
-            return f"its process was killed by {signal.Signals(-status).name}"
-        return f"its process exited with status {status} before it answered"
+        return f"its process {ending(status)} before it answered"
 
-    def _last_words(self) -> str:
+    def last_words(self) -> str:
+        """What the renderer printed last during the present request, as the end of a sentence; empty if nothing."""
         size = os.fstat(self._log.fileno()).st_size
         tail = os.pread(self._log.fileno(), 4096, max(0, size - 4096)).decode(errors="replace")
         lines = [plain(line) for line in tail.splitlines() if line.strip()]
-        return f"; it last wrote: {' | '.join(lines[-QUOTED_LINES:])}" if lines else "; it wrote nothing"
+        return f"; it last wrote: {' | '.join(lines[-QUOTED_LINES:])}" if lines else ""
+
+    @property
+    def crowded(self) -> bool:
+        """Whether the worker has left more processes behind than a renderer needs; for all that is known, never outside Linux."""
+        with contextlib.suppress(OSError):
+            lists = Path(f"/proc/{self._process.pid}/task").glob("*/children")
+            return sum(len(each.read_text().split()) for each in lists) > MOST_CHILDREN
+        return False
 
     def close(self) -> None:
         """Kill the worker, its process group, and whatever of its descendants left the group. May be called twice."""
@@ -123,6 +179,9 @@ class Worker:
             with contextlib.suppress(psutil.Error):
                 if process.environ().get(MARK) == self._mark:
                     process.kill()
+        self._release()
+
+    def _release(self) -> None:
         os.close(self._requests)
         os.close(self._answers)
         self._log.close()

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import errno
 import importlib
 import importlib.util
 import json
@@ -20,26 +21,43 @@ import time
 import traceback
 from collections.abc import Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from lightproof import films, radiometry, scene_file
 from lightproof.method import Method, Rendering, Unavailable
+from lightproof.renderers.function import as_method
 from lightproof.scene import Scene
 
 PR_SET_PDEATHSIG = 1
+PR_SET_CHILD_SUBREAPER = 36
 
 
-def load(target: str) -> type[Method]:
-    """The class that `module:Class` or `path/to/file.py:Class` names. Raises ImportError, AttributeError, OSError."""
+def load(target: str) -> Any:
+    """The class or function that `module:name` or `path/to/file.py:name` names. Raises ImportError, AttributeError, OSError, and
+    what the file itself raises."""
     where, _, name = target.rpartition(":")
+    if where.endswith(".toml"):
+        return getattr(importlib.import_module("lightproof.renderers.outside"), name).at(Path(where))
     if not where.endswith(".py"):
         return getattr(importlib.import_module(where), name)
-    spec = importlib.util.spec_from_file_location(Path(where).stem, where)
+    return getattr(sys.modules.get(where) or _execute(where), name)
+
+
+def _execute(path: str) -> ModuleType:
+    """The module that a file makes. It is known by its path, so that it shadows nothing; it finds the files beside it."""
+    spec = importlib.util.spec_from_file_location(path, path)
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return getattr(module, name)
+    sys.path.append(str(Path(path).parent))
+    sys.modules[path] = module
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[path]
+        raise
+    return module
 
 
 class Host:
@@ -51,7 +69,7 @@ class Host:
 
     def open(self, method: str, target: str, threads: int) -> dict[str, Any]:
         """What a method says about itself, or why it is unavailable."""
-        opened = load(target)(method, threads)
+        opened = as_method(load(target), method, threads)
         try:
             opened.open()
         except Unavailable as missing:
@@ -78,11 +96,14 @@ class Host:
                 "caveat": opened.caveat(scene)}
 
     def render(self, method: str, samples: int, seed: int, film: str) -> dict[str, Any]:
-        """One film of the prepared scene, written to the path `film`."""
+        """One film of the prepared scene, written to the path `film`, or why it is unsupported after all."""
         opened, scene = self._methods[method], self._scenes[method]
         forget_peak_memory()
         start = time.perf_counter()
-        rendering = opened.render(samples, seed)
+        try:
+            rendering = opened.render(samples, seed)
+        except NotImplementedError as reason:
+            return {"unsupported": str(reason) or f"{method} does not implement it"}
         seconds = phases(rendering.seconds, time.perf_counter() - start, rest="render")
         header = {"method": method, "method_version": opened.version(), "samples": str(rendering.samples), "seed": str(seed)}
         films.write(Path(film), scene.film.grid, channels(rendering, scene.size), {**about(scene), **header})
@@ -132,15 +153,28 @@ def answer(host: Host, request: dict[str, Any]) -> dict[str, Any]:
     try:
         return getattr(host, request.pop("op"))(**request)
     except Exception as error:
-        with contextlib.suppress(OSError):
-            traceback.print_exc()
-        return {"error": f"{type(error).__name__}: {error}"}
+        return {"error": f"{type(error).__name__}: {error}{_limit(error)}{_place(error)}"}
+
+
+def _limit(error: Exception) -> str:
+    """What was too large, where a file or the output was."""
+    most = resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+    return f": no file and no output may have more than {most:,} bytes" if getattr(error, "errno", 0) == errno.EFBIG else ""
+
+
+def _place(error: Exception) -> str:
+    """The last line of a file named on the command line that an error went through."""
+    lines = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in sys.modules]
+    return f" ({Path(lines[-1].filename).name}, line {lines[-1].lineno})" if lines else ""
 
 
 def die_with(parent: int) -> None:
-    """Have the kernel kill this process when the harness dies, however it dies."""
+    """Have the kernel kill this process when the harness dies, however it dies, and leave the orphans of its children to it, so
+    that the harness sees them."""
     if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        libc = ctypes.CDLL(None)
+        libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        libc.prctl(PR_SET_CHILD_SUBREAPER, 1)
     if os.getppid() != parent:
         os._exit(1)
 
@@ -154,7 +188,8 @@ def main(requests_fd: int, answers_fd: int, parent: int, file_limit: int) -> Non
     host = Host()
     with os.fdopen(requests_fd) as requests, os.fdopen(answers_fd, "w") as answers:
         for line in requests:
-            answers.write(json.dumps(answer(host, json.loads(line)), default=str) + "\n")
+            request = json.loads(line)
+            answers.write(json.dumps({"id": request.pop("id"), **answer(host, request)}, default=str) + "\n")
             answers.flush()
         os._exit(0)
 
