@@ -23,7 +23,7 @@ def rule(count):
     return (1 - np.cos(np.pi * (1 + nodes) / 2)) / 2, weights * np.pi / 4 * np.sin(np.pi * (1 + nodes) / 2)
 
 
-ROWS, LINE, ELEMENT = rule(14), rule(12), rule(14)
+ROWS, LINE, ELEMENT = rule(28), rule(24), rule(28)
 
 
 def values(scene, elements):

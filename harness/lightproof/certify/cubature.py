@@ -12,7 +12,7 @@ import numpy as np
 
 Array = np.ndarray
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(4)
-LEAST, DEPTH = 2, 12  # times that squares are quartered
+LEAST, DEPTH = 2, 16  # times that squares are quartered
 MOST = 20_000  # points at a time
 QUARTERS = np.array([(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)])
 

@@ -19,7 +19,7 @@ from lightproof.certify.many_outlines import Array, floats, irradiance
 from lightproof.certify.parting import Solid
 from lightproof.certify.planes import Frame, Patch, Region
 
-GOAL = 2e-8  # of what the open light gives
+GOAL = 2e-10  # of what the open light gives
 SAME = 1e-11  # of it: as far as binary64 may be from the proven value
 CENTRE = np.zeros((2, 1))
 ASIDE = np.array([[0.27], [-0.14]])  # in the square: the receiver that is checked
