@@ -23,7 +23,7 @@ TOP = ("title", "tests", "tags", "max_bounces", "tolerance", "tolerance_scale", 
 def read_cases(path: Path) -> dict[str, Scene]:
     """Every case of a scene file, the base first. Raises SceneError, which names the file, on anything broken."""
     try:
-        table = _parse(path)
+        table = read_table(path, "scene")
         cases = table.pop("cases", {})
         if not isinstance(cases, dict):
             raise SceneError("cases", 'give a table for each case, such as [cases.far]')
@@ -47,15 +47,16 @@ def _read_case(table: dict[str, Any], name: str, case: str, changes: Any) -> Sce
         raise error.within(f"cases.{case}") from None
 
 
-def _parse(path: Path) -> dict[str, Any]:
+def read_table(path: Path, what: str) -> dict[str, Any]:
+    """The table of a TOML file that is to hold a `what`, such as "scene". Raises SceneError where it is none, or too large."""
     try:
         if path.stat().st_size > MAX_BYTES:
-            raise SceneError("", f"the file is larger than {MAX_BYTES} bytes; a scene is a small text")
+            raise SceneError("", f"the file is larger than {MAX_BYTES} bytes; a {what} is a small text")
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise SceneError("", f"cannot be read: {error.strerror}; give the path of a scene file (.toml)") from None
+        raise SceneError("", f"cannot be read: {error.strerror}; give the path of a {what} file (.toml)") from None
     except UnicodeDecodeError as error:
-        raise SceneError("", f"is not UTF-8 text (byte {error.start}); a scene file is TOML") from None
+        raise SceneError("", f"is not UTF-8 text (byte {error.start}); a {what} file is TOML") from None
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise SceneError("", f"is not TOML: {error}") from None
 

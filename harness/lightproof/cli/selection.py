@@ -9,6 +9,7 @@ from pathlib import Path
 
 from lightproof import scene, suite
 from lightproof.cli.status import UsageError, unknown
+from lightproof.renderers import manifest
 from lightproof.renderers.registry import METHODS, Entry
 from lightproof.scene import Scene
 from lightproof.scene_file import BASE
@@ -19,8 +20,8 @@ TARGET = re.compile(r"(?P<where>.+):(?P<cls>\w+)(?P<options>/.*)?")
 
 
 def methods(patterns: Sequence[str], tags: Sequence[str]) -> list[Entry]:
-    """The methods that `patterns` name: names, globs over names, or `module:Class` and `path/to/file.py:Class` of the user's
-    own; without patterns each method's best configuration, or every one for the tag nightly. Raises UsageError."""
+    """The methods that `patterns` name: names, globs over names, or `module:Class`, `path/to/file.py:Class` and manifests
+    (`path/to/renderer.toml`) of the user's own; without patterns each method's best configuration, or every one for the tag nightly. Raises UsageError."""
     if not patterns:
         return [entry for entry in METHODS.values() if NIGHTLY in tags or not entry.nightly]
     chosen = {entry.name: entry for pattern in patterns for entry in _matching(pattern)}
@@ -30,6 +31,8 @@ def methods(patterns: Sequence[str], tags: Sequence[str]) -> list[Entry]:
 def _matching(pattern: str) -> list[Entry]:
     if target := TARGET.fullmatch(pattern):
         return [_own(**target.groupdict())]
+    if pattern.endswith(".toml"):
+        return [_outside(Path(pattern).resolve())]
     names = fnmatch.filter(METHODS, pattern)
     if not names:
         raise unknown("method", pattern, [*METHODS])
@@ -42,6 +45,13 @@ def _own(where: str, cls: str, options: str | None) -> Entry:
         raise UsageError(f"{where}: there is no such file; give the path of a Python file, such as my_renderer.py:MyRenderer")
     stem, where = (path.stem, str(path.resolve())) if where.endswith(".py") else (where, where)
     return Entry(f"{stem}:{cls}{options or ''}", f"{where}:{cls}", worker=f"{where}:{cls}")
+
+
+def _outside(path: Path) -> Entry:
+    name = manifest.read(path).name
+    if name in METHODS:
+        raise UsageError(f"{path}: name: {name!r} is a method of Lightproof's own; give the renderer another name")
+    return Entry(name, f"{path}:Outside", worker=str(path))
 
 
 def scenes(names: Sequence[str], tags: Sequence[str], root: Suite) -> dict[Scene, Suite]:
