@@ -20,8 +20,9 @@ TARGET = re.compile(r"(?P<where>.+):(?P<cls>\w+)(?P<options>/.*)?")
 
 
 def methods(patterns: Sequence[str], tags: Sequence[str]) -> list[Entry]:
-    """The methods that `patterns` name: names, globs over names, or `module:Class`, `path/to/file.py:Class` and manifests
-    (`path/to/renderer.toml`) of the user's own; without patterns each method's best configuration, or every one for the tag nightly. Raises UsageError."""
+    """The methods that `patterns` name: names, globs over names, or of the user's own `module:Class`, `path/to/file.py:Class` and
+    manifests, `path/to/renderer.toml`; without patterns each method's best configuration, or every one for the tag nightly.
+    Raises UsageError, SceneError."""
     if not patterns:
         return [entry for entry in METHODS.values() if NIGHTLY in tags or not entry.nightly]
     chosen = {entry.name: entry for pattern in patterns for entry in _matching(pattern)}
