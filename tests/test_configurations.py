@@ -26,7 +26,15 @@ MITSUBA = {
     "mitsuba/scalar": {"variant": "scalar_rgb"},
     "mitsuba/spectral": {"variant": "llvm_ad_spectral", "film": "specfilm"},
 }
-CONFIGURATIONS = MITSUBA
+CYCLES = {
+    "cycles": {"sampling_pattern": "TABULATED_SOBOL", "light_tree": False, "emitters": "lamps"},
+    "cycles/lamp": {"emitters": "lamps"},
+    "cycles/mesh": {"emitters": "meshes"},
+    "cycles/light-tree": {"light_tree": True},
+    "cycles/blue-noise": {"sampling_pattern": "BLUE_NOISE"},
+    "cycles/automatic": {"sampling_pattern": "AUTOMATIC"},
+}
+CONFIGURATIONS = MITSUBA | CYCLES
 
 
 @pytest.fixture(scope="module")

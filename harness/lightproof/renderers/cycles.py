@@ -1,4 +1,4 @@
-"""Blender Cycles, through the module `bpy`, on the CPU."""
+"""Blender Cycles, through the module `bpy`, on the CPU, in the configurations of `CONFIGURATIONS`."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import os
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lightproof.method import Method, Rendering
-from lightproof.renderers import cycles_scene, importing, mesh, transport, views
+from lightproof.renderers import cycles_scene, importing, mesh, options, transport, views
 from lightproof.renderers.views import View
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, Environment, PointLight, Scene
 
@@ -32,11 +32,35 @@ RENDER = {
     "engine": "CYCLES", "threads_mode": "FIXED", "use_persistent_data": True, "dither_intensity": 0, "use_compositing": False,
     "use_sequencer": False, "use_motion_blur": False, "use_simplify": False,
 }
+FITTING, LAMPS, MESHES = "fitting", "lamps", "meshes"
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """`changes` to `CYCLES`, and what area lights become: Blender's own lamps, meshes that emit, or what is right for the scene:
+    nothing sees a lamp, and it blocks nothing."""
+
+    emitters: str = FITTING
+    changes: Mapping[str, Any] = field(default_factory=dict)
+
+
+CONFIGURATIONS = {
+    "": Configuration(),
+    "lamp": Configuration(emitters=LAMPS),
+    "mesh": Configuration(emitters=MESHES),
+    "light-tree": Configuration(changes={"use_light_tree": True}),
+    "blue-noise": Configuration(changes={"sampling_pattern": "BLUE_NOISE"}),
+    "automatic": Configuration(changes={"sampling_pattern": "AUTOMATIC"}),
+}
 IMAGE = {"media_type": "IMAGE", "file_format": "OPEN_EXR", "color_mode": "RGB", "color_depth": "32", "exr_codec": "NONE"}
 
 
 class Cycles(Method):
     """Cycles with everything off that trades exactness for looks."""
+
+    def __init__(self, name: str, threads: int):
+        super().__init__(name, threads)
+        self.configuration = options.chosen(name, CONFIGURATIONS)
 
     def open(self) -> None:
         with _quiet():
@@ -48,22 +72,36 @@ class Cycles(Method):
         return self.bpy.app.version_string
 
     def settings(self) -> Mapping[str, Any]:
-        return {"bounces": self.bounces, "emitters": "lamps" if self.lamps else "meshes", "filter": "box",
-                "sampling_pattern": CYCLES["sampling_pattern"], "sphere_triangles": 20 * 4**mesh.SPHERE}
+        cycles = self.sets[0].cycles
+        return {"bounces": self.bounces, "emitters": LAMPS if self.lamps else MESHES, "filter": "box",
+                "sampling_pattern": cycles.sampling_pattern, "light_tree": cycles.use_light_tree,
+                "sphere_triangles": 20 * 4**mesh.SPHERE}
 
     def unsupported(self, scene: Scene) -> str | None:
         for light in scene.lights:
             if not isinstance(light, AreaLight | PointLight | DirectionalLight | Environment):
                 return "Cycles is not given sun discs or overcast skies yet"
-        return transport.unsupported(scene, BOUNCES) or views.unsupported(scene)
+        return self._no_lamp(scene) or transport.unsupported(scene, BOUNCES) or views.unsupported(scene)
+
+    def _no_lamp(self, scene: Scene) -> str | None:
+        """Why the lamps that are asked for cannot be had, or None."""
+        if self.configuration.emitters != LAMPS:
+            return None
+        for light in scene.lights:
+            if isinstance(light, AreaLight) and not cycles_scene.has_lamp(light.shape):
+                return f"Blender's lamps are spheres, disks and rectangles, and '{light.id}' is none"
+        return "Blender's lamps are not seen from behind" if isinstance(scene.film, CameraFilm) else None
+
+    def caveat(self, scene: Scene) -> str:
+        if self.configuration.emitters == LAMPS and not _lamps_fit(scene):
+            return "Cycles' lamps block no light: what would fall on the back of one passes through it."
+        return ""
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()
         self.bpy.ops.wm.read_factory_settings(use_empty=True)
-        camera = isinstance(scene.film, CameraFilm)
-        self.bounces = max(transport.reflections(scene, BOUNCES) - camera, 0)
-        alone = len(scene.lights) == 1 and not any(surface.radiance for surface in scene.surfaces)
-        self.lamps = alone and not scene.reflects and not camera
+        self.bounces = max(transport.reflections(scene, BOUNCES) - isinstance(scene.film, CameraFilm), 0)
+        self.lamps = {LAMPS: True, MESHES: False, FITTING: _lamps_fit(scene)}[self.configuration.emitters]
         self.views = views.views(scene)
         world = cycles_scene.world(self.bpy, [light for light in scene.lights if isinstance(light, Environment)])
         contents = self._contents(scene)
@@ -107,9 +145,10 @@ class Cycles(Method):
         bounces = dict.fromkeys(("max_bounces", "diffuse_bounces", "min_light_bounces"), self.bounces)
         size = {"resolution_x": columns, "resolution_y": rows, "resolution_percentage": 100, "threads": self.threads,
                 "pixel_aspect_x": max(wide, 1.0), "pixel_aspect_y": max(1 / wide, 1.0)}
-        for owner, fields in ((made.render, RENDER | size), (made.cycles, CYCLES | bounces), (made.render.image_settings, IMAGE)):
-            for field, value in fields.items():
-                setattr(owner, field, value)
+        cycles = {**CYCLES, **self.configuration.changes, **bounces}
+        for owner, values in ((made.render, RENDER | size), (made.cycles, cycles), (made.render.image_settings, IMAGE)):
+            for name, value in values.items():
+                setattr(owner, name, value)
 
     def _image(self, made: Any, samples: int, seed: int) -> np.ndarray:
         import OpenEXR
@@ -120,6 +159,12 @@ class Cycles(Method):
             self.bpy.ops.render.render(write_still=True, scene=made.name)
         with OpenEXR.File(str(path)) as file:
             return np.array(file.channels()["RGB"].pixels[:, :, 0], float)
+
+
+def _lamps_fit(scene: Scene) -> bool:
+    """Whether a lone lamp does all that the scene's light does: nothing has to see it, or to be hidden by it."""
+    alone = len(scene.lights) == 1 and not any(surface.radiance for surface in scene.surfaces)
+    return alone and not scene.reflects and not isinstance(scene.film, CameraFilm)
 
 
 def _block(view: View) -> int:

@@ -37,8 +37,8 @@ class Stage:
                 self._lamp(light.id, "POINT", 4 * np.pi * light.intensity, _at(light.position), shadow_soft_size=0.0)
             case DirectionalLight():
                 self._lamp(light.id, "SUN", light.irradiance, _facing((0, 0, 0), light.direction), angle=0.0)
-            case AreaLight() if self.lamps and self._area_lamp(light):
-                pass
+            case AreaLight() if self.lamps and has_lamp(light.shape):
+                self._area_lamp(light)
             case AreaLight():
                 self._mesh(light.id, _emitter(light.shape), 0.0, light.radiance)
 
@@ -62,8 +62,8 @@ class Stage:
         right, up, forward = geometry.camera_frame(view.origin, view.target, view.up)
         return self._object("film-camera", data, pose(view.origin, right, up, -forward))
 
-    def _area_lamp(self, light: AreaLight) -> bool:
-        """Add a lamp of the light's own shape, if Blender has one."""
+    def _area_lamp(self, light: AreaLight) -> None:
+        """Add a lamp of the light's own shape."""
         shape = light.shape
         match shape:
             case Sphere():
@@ -72,15 +72,12 @@ class Stage:
             case Disk():
                 energy = np.pi * shape.area * light.radiance
                 self._lamp(light.id, "AREA", energy, _facing(shape.center, shape.normal), shape="DISK", size=2 * shape.radius)
-            case Polygon() if mesh.is_rectangle(np.array(shape.vertices)):
+            case Polygon():
                 a, b, c, d = np.array(shape.vertices)
                 place = pose((a + c) / 2, geometry.unit(b - a), geometry.unit(a - d), -shape.normal)
                 size, size_y = float(np.linalg.norm(b - a)), float(np.linalg.norm(d - a))
                 energy = np.pi * shape.area * light.radiance
                 self._lamp(light.id, "AREA", energy, place, shape="RECTANGLE", size=size, size_y=size_y)
-            case _:
-                return False
-        return True
 
     def _lamp(self, name: str, kind: str, energy: float, place: np.ndarray, **fields: Any) -> None:
         data = self.bpy.data.lights.new(name, kind)
@@ -99,6 +96,11 @@ class Stage:
         made.matrix_world = place.T
         self.collection.objects.link(made)
         return made
+
+
+def has_lamp(shape: Shape) -> bool:
+    """Whether Blender has a lamp of a shape."""
+    return isinstance(shape, Sphere | Disk) or (isinstance(shape, Polygon) and mesh.is_rectangle(np.array(shape.vertices)))
 
 
 def material(bpy: ModuleType, name: str, reflectance: float, radiance: float) -> Any:

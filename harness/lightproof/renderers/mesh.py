@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from itertools import combinations
 
 import numpy as np
 
@@ -159,12 +160,11 @@ def _icosphere(times: int) -> Mesh:
 
 
 def _hull(vertices: np.ndarray) -> np.ndarray:
-    from scipy.spatial import ConvexHull
-
-    triangles = ConvexHull(vertices).simplices
-    a, b, c = vertices[triangles].transpose(1, 0, 2)
-    outward = (np.cross(b - a, c - a) * a).sum(axis=1) > 0
-    return np.where(outward[:, None], triangles, triangles[:, ::-1])
+    """The faces of the icosahedron with these corners (12, 3): three that are next to each other, counter-clockwise."""
+    distances = np.linalg.norm(vertices[:, None] - vertices, axis=-1)
+    neighbours = distances < 1.01 * distances[distances > 0].min()
+    faces = [face for face in combinations(range(12), 3) if all(neighbours[a, b] for a, b in combinations(face, 2))]
+    return np.array([face if np.linalg.det(vertices[list(face)]) > 0 else face[::-1] for face in faces])
 
 
 def _quartered(mesh: Mesh) -> Mesh:

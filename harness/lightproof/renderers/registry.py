@@ -29,6 +29,12 @@ def _mitsuba(option: str, worker: str = "mitsuba") -> Entry:
     return Entry(f"mitsuba/{option}", "lightproof.renderers.mitsuba:Mitsuba", worker, extra="mitsuba", nightly=True)
 
 
+def _cycles(option: str) -> Entry:
+    """A configuration, in a process of its own: Blender holds one file at a time."""
+    name = f"cycles/{option}"
+    return Entry(name, "lightproof.renderers.cycles:Cycles", worker=name, extra="cycles", nightly=True)
+
+
 METHODS = {
     entry.name: entry
     for entry in (
@@ -45,6 +51,7 @@ METHODS = {
         _mitsuba("spectral", worker="mitsuba-spectral"),
         *map(_mitsuba, ("independent", "stratified", "orthogonal", "sobol", "emitter-sampling", "mis", "path")),
         Entry("cycles", "lightproof.renderers.cycles:Cycles", worker="cycles", extra="cycles"),
+        *map(_cycles, ("lamp", "mesh", "light-tree", "blue-noise", "automatic")),
         Entry("luxcore", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore"),
         Entry("luxcore/random", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
         Entry("luxcore/bidirectional", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
