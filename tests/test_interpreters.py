@@ -1,0 +1,58 @@
+"""A worker under another Python interpreter, so that two versions of a renderer stand side by side."""
+
+from __future__ import annotations
+
+import sys
+import sysconfig
+import venv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lightproof import suite
+from lightproof.renderers.pool import Pool
+from lightproof.renderers.registry import Entry
+from lightproof.trial import Result, Status, Trial
+
+SCENE = suite.default().scene("point-light")
+TARGET = f"{Path(__file__).with_name('elsewhere.py')}:Elsewhere"
+
+
+@pytest.fixture(scope="module")
+def other(tmp_path_factory) -> Path:
+    """An interpreter with the packages of this one and its own prefix, in which lightproof itself is not installed."""
+    folder = tmp_path_factory.mktemp("other")
+    venv.create(folder, symlinks=True)
+    packages = Path(sysconfig.get_path("purelib", vars={"base": str(folder)}))
+    here = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
+    (packages / "shared.pth").write_text("\n".join(here) + "\n")
+    return folder / "bin" / "python"
+
+
+def render(python: Path | str, folder: Path) -> Result:
+    entry = Entry("elsewhere", TARGET, worker=f"elsewhere {python}", python=str(python))
+    trial = Trial(SCENE.id, SCENE.case, SCENE.digest, entry.name, samples=1, replicate=0)
+    with Pool(threads=1) as pool:
+        return pool.render(entry, SCENE, trial, folder / "film.exr", timeout=20)
+
+
+def test_the_same_film_from_another_interpreter(other, tmp_path):
+    """The worker runs where it was told to, by its prefix, and its film is that of our own interpreter to the last bit."""
+    here, there = render("", tmp_path), render(other, tmp_path)
+    assert (here.version, there.version) == (sys.prefix, str(other.parents[1]))
+    assert np.array_equal(here.film, there.film)
+
+
+@pytest.mark.parametrize(("path", "complaint"), [
+    ("no/such/python", "cannot be run (No such file or directory); give the path of a Python interpreter"),
+    ("not-executable", "cannot be run (Permission denied); give the path of a Python interpreter"),
+    ("bare/bin/python", "lacks numpy or OpenEXR: "),
+])
+def test_a_wrong_interpreter_says_what_would_be_right(path, complaint, tmp_path):
+    """A path that leads nowhere, to a file that is no program, and to an interpreter without numpy."""
+    (tmp_path / "not-executable").touch()
+    venv.create(tmp_path / "bare", symlinks=True)
+    result = render(tmp_path / path, tmp_path)
+    assert result.status is Status.ERROR
+    assert f"{tmp_path / path} {complaint}" in result.message
