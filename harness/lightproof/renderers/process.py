@@ -56,12 +56,14 @@ class Worker:
 
     Start it from a thread that lasts: the kernel kills it when that thread ends. What it prints goes to a file that is
     emptied before each request and cannot grow beyond `file_limit` [bytes], as no file of the worker's can. It runs under the
-    interpreter `python` (a path), by default the harness's own; raises WorkerDied where there is none.
+    interpreter `python` (a path), by default the harness's own; raises WorkerDied where there is none. Its temporary files are
+    in a folder of its own, which goes when it ends, however it does.
     """
 
     def __init__(self, threads: int, file_limit: int = LARGEST_FILE, python: str = ""):
         self._mark = uuid.uuid4().hex
         self._log = tempfile.TemporaryFile("ab+")  # noqa: SIM115 - lives as long as the worker
+        self._scratch = tempfile.TemporaryDirectory(prefix="lightproof-", ignore_cleanup_errors=True)
         self._buffer = b""
         self._asked = 0
         requests, self._requests = os.pipe()
@@ -76,7 +78,7 @@ class Worker:
                 stdout=self._log,
                 stderr=self._log,
                 start_new_session=True,
-                env={**os.environ, "OMP_NUM_THREADS": str(threads), MARK: self._mark},
+                env={**os.environ, "OMP_NUM_THREADS": str(threads), "TMPDIR": self._scratch.name, MARK: self._mark},
             )
         except OSError as error:
             self._release()
@@ -185,3 +187,4 @@ class Worker:
         os.close(self._requests)
         os.close(self._answers)
         self._log.close()
+        self._scratch.cleanup()

@@ -169,19 +169,23 @@ def _place(error: Exception) -> str:
 
 
 def die_with(parent: int) -> None:
-    """Have the kernel kill this process when the harness dies, however it dies, and leave the orphans of its children to it, so
-    that the harness sees them."""
+    """Have the kernel kill this process when its parent dies, however it dies."""
     if sys.platform == "linux":
-        libc = ctypes.CDLL(None)
-        libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-        libc.prctl(PR_SET_CHILD_SUBREAPER, 1)
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:
         os._exit(1)
+
+
+def adopt_orphans() -> None:
+    """Have the kernel leave to this process what its children leave behind, so that the harness sees it."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
 
 
 def main(requests_fd: int, answers_fd: int, parent: int, file_limit: int) -> None:
     """Answer until the pipe closes."""
     die_with(parent)
+    adopt_orphans()
     resource.setrlimit(resource.RLIMIT_FSIZE, (file_limit, file_limit))
     for fd in (requests_fd, answers_fd):
         os.set_inheritable(fd, False)
