@@ -165,6 +165,8 @@ def _rendering(answer: Rendered, job: Job) -> Rendering:
 def _from_file(job: Job) -> dict[str, np.ndarray]:
     """What the film file holds, under the names of an answer."""
     path = Path(job.film.path)
+    if not path.is_file():
+        raise AnswerError(f'its film is "{IN_FILE}", but it wrote no {path.name} at the path that the job names')
     grid, channels, header = films.read(path)
     if header.get("digest", job.digest) != job.digest:
         raise AnswerError(f"{path.name} is the film of another scene (digest {shown(header['digest'])})")
