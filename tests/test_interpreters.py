@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import sysconfig
 import venv
@@ -11,8 +12,10 @@ import numpy as np
 import pytest
 
 from lightproof import suite
+from lightproof.checked import SceneError
+from lightproof.cli import selection
 from lightproof.renderers.pool import Pool
-from lightproof.renderers.registry import Entry
+from lightproof.renderers.registry import METHODS, Entry
 from lightproof.trial import Result, Status, Trial
 
 SCENE = suite.default().scene("point-light")
@@ -56,3 +59,30 @@ def test_a_wrong_interpreter_says_what_would_be_right(path, complaint, tmp_path)
     result = render(tmp_path / path, tmp_path)
     assert result.status is Status.ERROR
     assert f"{tmp_path / path} {complaint}" in result.message
+
+
+def manifest(folder: Path, method: str, python: Path | str) -> str:
+    path = folder / "other.toml"
+    path.write_text(f'name = "other-version"\nmethod = "{method}"\npython = "{python}"\n')
+    return str(path)
+
+
+def test_a_manifest_names_the_interpreter(other, tmp_path):
+    """A configuration keeps its option, and nothing else of the registry's entry changes but where it runs. A path counts from
+    the manifest's folder and is not followed, since a virtual environment is where its link is."""
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "python").symlink_to(other)
+    (entry,) = selection.methods([manifest(tmp_path, "mitsuba/independent", "bin/python")], [])
+    assert (entry.name, entry.target) == ("other-version/independent", METHODS["mitsuba/independent"].target)
+    assert (entry.python, entry.nightly) == (str(tmp_path / "bin" / "python"), False)
+    assert entry.worker != METHODS["mitsuba/independent"].worker
+
+
+@pytest.mark.parametrize(("method", "python", "complaint"), [
+    ("mitsuba", "no/python", "other.toml: python: there is no executable 'no/python'; give the path of a Python"),
+    ("mitsuba", "no-such-python", "other.toml: python: there is no executable 'no-such-python'"),
+    ("mitsubishi", sys.executable, "other.toml: method: there is no method 'mitsubishi'; there are analytic"),
+])
+def test_a_wrong_manifest_says_where(method, python, complaint, tmp_path):
+    with pytest.raises(SceneError, match=re.escape(complaint)):
+        selection.methods([manifest(tmp_path, method, python)], [])

@@ -16,16 +16,20 @@ from lightproof.scene_file import BASE
 from lightproof.suite import Suite
 
 NIGHTLY, QUICK = "nightly", "quick"
-TARGET = re.compile(r"(?P<where>.+):(?P<cls>\w+)(?P<options>/.*)?")
+TARGET = re.compile(r"(?P<where>.+):(?P<name>\w+)(?P<options>/.*)?")
 
 
 def methods(patterns: Sequence[str], tags: Sequence[str]) -> list[Entry]:
-    """The methods that `patterns` name: names, globs over names, or of the user's own `module:Class`, `path/to/file.py:Class` and
-    manifests, `path/to/renderer.toml`; without patterns each method's best configuration, or every one for the tag nightly.
+    """The methods that `patterns` name: names, globs over names, or of the user's own `module:name` and `path/to/file.py:name`
+    (classes and functions) and manifests, `path/to/renderer.toml`; without patterns each method's best configuration, or every
+    one for the tag nightly.
     Raises UsageError, SceneError."""
     if not patterns:
         return [entry for entry in METHODS.values() if NIGHTLY in tags or not entry.nightly]
-    chosen = {entry.name: entry for pattern in patterns for entry in _matching(pattern)}
+    chosen: dict[str, Entry] = {}
+    for entry in (each for pattern in patterns for each in _matching(pattern)):
+        if chosen.setdefault(entry.name, entry) != entry:
+            raise UsageError(f"two different methods are called {entry.name}; rename the file of one")
     return list(chosen.values())
 
 
@@ -40,19 +44,19 @@ def _matching(pattern: str) -> list[Entry]:
     return [METHODS[name] for name in names]
 
 
-def _own(where: str, cls: str, options: str | None) -> Entry:
+def _own(where: str, name: str, options: str | None) -> Entry:
     path = Path(where)
     if where.endswith(".py") and not path.is_file():
-        raise UsageError(f"{where}: there is no such file; give the path of a Python file, such as my_renderer.py:MyRenderer")
+        raise UsageError(f"{where}: there is no such file; give the path of a Python file, such as my_renderer.py:render")
     stem, where = (path.stem, str(path.resolve())) if where.endswith(".py") else (where, where)
-    return Entry(f"{stem}:{cls}{options or ''}", f"{where}:{cls}", worker=f"{where}:{cls}")
+    return Entry(f"{stem}:{name}{options or ''}", f"{where}:{name}", worker=f"{where}:{name}")
 
 
 def _outside(path: Path) -> Entry:
-    name = manifest.read(path).name
-    if name in METHODS:
-        raise UsageError(f"{path}: name: {name!r} is a method of Lightproof's own; give the renderer another name")
-    return Entry(name, f"{path}:Outside", worker=str(path))
+    described = manifest.read(path)
+    if described.name in METHODS:
+        raise UsageError(f"{path}: name: {described.name!r} is a method of Lightproof's own; give the renderer another name")
+    return described.entry(path)
 
 
 def scenes(names: Sequence[str], tags: Sequence[str], root: Suite) -> dict[Scene, Suite]:

@@ -12,6 +12,8 @@ from lightproof import checked, geometry, scene, scene_file
 from lightproof.checked import Checked, SceneError
 from lightproof.method import Unavailable
 from lightproof.renderers import fields
+from lightproof.renderers.registry import Entry
+from lightproof.renderers.versions import Version
 from lightproof.scene import Scene
 
 QUANTITIES = ("irradiance", "radiance", "solid_angle")
@@ -81,10 +83,17 @@ class Manifest(Checked):
     supports: Supports = fields.nested(Supports, default=Supports())
 
 
-def read(path: Path) -> Manifest:
-    """The manifest in a file. Raises SceneError, which names the file, the field and what would be right."""
+    def entry(self, path: Path) -> Entry:
+        """The method that the manifest at `path` describes."""
+        return Entry(self.name, f"{path}:Outside", worker=str(path))
+
+
+def read(path: Path) -> Manifest | Version:
+    """The manifest in a file: of a renderer, or, where it names a `method`, of another version of one that Lightproof knows.
+    Raises SceneError, which names the file, the field and what would be right."""
     try:
-        return fields.built(Manifest, scene_file.read_table(path, "manifest"))
+        table = scene_file.read_table(path, "manifest")
+        return fields.built(Version if "method" in table else Manifest, table)
     except SceneError as error:
         raise SceneError(str(path), str(error)) from None
 

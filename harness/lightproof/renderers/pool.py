@@ -86,7 +86,8 @@ class Pool:
     def _start(self, entry: Entry) -> About:
         answer = self._ask(entry, "open", self._patience, target=entry.target, threads=self.threads)
         if "unavailable" in answer:
-            raise Unavailable(plain(answer["unavailable"]))
+            under = f" (for {entry.python})" if entry.python else ""
+            raise Unavailable(plain(answer["unavailable"]) + under)
         return About(**answer)
 
     def render(self, entry: Entry, scene: Scene, trial: Trial, film: Path, timeout: float) -> Result:
