@@ -24,6 +24,7 @@ LAYERS = [
     {"plan"},
     {"baseline", "reporting"},
     {"gate", "api"},
+    {"checking"},
     {"cli", "pytest_plugin"},
 ]
 
@@ -61,6 +62,6 @@ def test_imports_go_one_way():
 def test_the_judged_never_see_a_reference():
     """Estimators, renderers and the runner load no reference; the reference engine imports no estimator."""
     imported = modules()
-    for judged in ("estimators", "renderers", "exporting", "runner", "method", "films", "trial"):
+    for judged in ("estimators", "renderers", "runner", "method", "films", "trial"):
         assert not imported[judged] & {"references", "suite", "certify", "verdict", "reporting"}, judged
     assert imported["certify"] <= {"checked", "geometry", "scene", "scene_file", "radiometry", "references", "suite"}

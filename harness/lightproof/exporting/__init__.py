@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from lightproof import suite
 from lightproof.renderers import views
 from lightproof.renderers.views import View
 from lightproof.scene import PointsFilm, Scene
@@ -55,10 +56,12 @@ def view(scene: Scene) -> View:
 
 
 def remarks(scene: Scene, path: Path) -> list[str]:
-    """For a comment in the main file `path`: what a picture holds, and the command that judges it."""
+    """For a comment in the main file `path`: what a picture holds, and the command that judges it (of a scene that is not
+    Lightproof's own it names the file)."""
     seen = view(scene)
     columns, rows = seen.resolution
-    judge = f"lightproof grade {path.stem}.exr --scene {scene.name}"
+    name = scene.name if scene.id in suite.default().ids else scene.name.replace(scene.id, f"{scene.id}.toml", 1)
+    judge = f"lightproof grade {path.stem}.exr --scene {name}"
     lines = [
         f"Lightproof scene {scene.name}: {scene.title}. Metres, z up.",
         f"Picture: {columns} x {rows} pixels, box filter; each the mean radiance [W/(m2 sr)] over its square, row 0 on top.",
