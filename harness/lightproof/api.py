@@ -35,7 +35,7 @@ def load(scene: str) -> Scene:
 
 def reference(scene: Scene | str) -> Reference:
     """The exact light: `value` and `uncertainty` (n,) in the film's unit. Raises SceneError, ReferenceError."""
-    scene, home = _found(scene)
+    scene, home = found(scene)
     return home.reference(scene)
 
 
@@ -46,7 +46,7 @@ def render(scene: Scene | str, method: str = "mc-area", samples: int = 1024, rep
 
     Raises ValueError on an unknown method, RenderError where it cannot do the scene or fails, SceneError.
     """
-    scene, _ = _found(scene)
+    scene, _ = found(scene)
     if method not in METHODS:
         raise ValueError(f"there is no method {method!r}; give one of {', '.join(METHODS)}")
     with tempfile.TemporaryDirectory() as folder, Pool(threads or os.cpu_count() or 1) as pool:
@@ -67,7 +67,7 @@ def judge(films: ArrayLike | Mapping[int, ArrayLike], scene: Scene | str) -> Ver
     samples of the one before; without a ladder nothing is known of samples, so none are asked for. Raises ValueError where
     the shape does not fit, SceneError, ReferenceError.
     """
-    scene, home = _found(scene)
+    scene, home = found(scene)
     counted = isinstance(films, Mapping)
     ladder = films if counted else {1: films}
     results = [result for samples, step in ladder.items() for result in _results(np.asarray(step, float), samples, scene)]
@@ -77,7 +77,8 @@ def judge(films: ArrayLike | Mapping[int, ArrayLike], scene: Scene | str) -> Ver
     return replace(judged, samples_needed=None, reason=judged.reason.removesuffix(verdict.demand(judged.samples_needed)))
 
 
-def _found(scene: Scene | str) -> tuple[Scene, suite.Suite]:
+def found(scene: Scene | str) -> tuple[Scene, suite.Suite]:
+    """A scene, given itself or by name or path, with the suite that holds its reference. Raises SceneError."""
     return suite.find(scene, suite.default()) if isinstance(scene, str) else (scene, _homes.get(scene, suite.default()))
 
 

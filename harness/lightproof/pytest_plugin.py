@@ -1,7 +1,12 @@
-"""The gate for pytest: a marked test runs only if nothing that the baseline accepts has become worse.
+"""For pytest: a fixture that judges a renderer, and a marker that runs a test only if nothing has become worse.
+
+    def test_light(lightproof):
+        lightproof.check(render, "occluded-square")
+
+See `checking.check` for what it takes: a function (scene, samples, seed) -> film, a film, or a method's name.
 
     @pytest.mark.lightproof_gate(scenes=["square-light"], methods=["mc-*"])
-    def test_light(): ...
+    def test_nothing_is_worse(): ...
 
 `scenes` and `methods` are globs over the baseline's rows (default: all), `baseline` its path (default: reports/baseline.csv
 in the folder that pytest was started from).
@@ -12,6 +17,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -23,6 +29,14 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", f"{MARK}(scenes, methods, baseline): fail if these rows became worse than the baseline")
 
 
+@pytest.fixture(scope="session")
+def lightproof() -> ModuleType:
+    """`lightproof.check(renderer or film, scene)` fails the test where the light is not right, and says why."""
+    from lightproof import checking
+
+    return checking
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_call(item: pytest.Item) -> None:
     """Judge the marked rows before the test's own body; anything that is not as good as the baseline fails the test."""
@@ -31,12 +45,12 @@ def pytest_runtest_call(item: pytest.Item) -> None:
         unknown = set(mark.kwargs) - {"scenes", "methods", "baseline"}
         if mark.args or unknown:
             raise pytest.UsageError(f"{MARK} takes scenes=[...], methods=[...] and baseline='...', nothing else")
-        complaints = check(item.config.invocation_params.dir, **mark.kwargs)
+        complaints = worse(item.config.invocation_params.dir, **mark.kwargs)
         if complaints:
             pytest.fail("\n".join(complaints), pytrace=False)
 
 
-def check(folder: Path, scenes: Sequence[str] = (), methods: Sequence[str] = (),
+def worse(folder: Path, scenes: Sequence[str] = (), methods: Sequence[str] = (),
           baseline: str = "reports/baseline.csv") -> list[str]:
     """What the gate has against the chosen rows of a baseline. Raises BaselineError, SceneError."""
     from lightproof import baseline as accepted_state

@@ -22,8 +22,7 @@ TARGET = re.compile(r"(?P<where>.+):(?P<name>\w+)(?P<options>/.*)?")
 def methods(patterns: Sequence[str], tags: Sequence[str]) -> list[Entry]:
     """The methods that `patterns` name: names, globs over names, or of the user's own `module:name` and `path/to/file.py:name`
     (classes and functions) and manifests, `path/to/renderer.toml`; without patterns each method's best configuration, or every
-    one for the tag nightly.
-    Raises UsageError, SceneError."""
+    one for the tag nightly. Raises UsageError, SceneError."""
     if not patterns:
         return [entry for entry in METHODS.values() if NIGHTLY in tags or not entry.nightly]
     chosen: dict[str, Entry] = {}
