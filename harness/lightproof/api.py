@@ -6,7 +6,6 @@ import math
 import os
 import tempfile
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -72,9 +71,7 @@ def judge(films: ArrayLike | Mapping[int, ArrayLike], scene: Scene | str) -> Ver
     ladder = films if counted else {1: films}
     results = [result for samples, step in ladder.items() for result in _results(np.asarray(step, float), samples, scene)]
     judged = verdict.judge(results, home.reference(scene), scene)
-    if counted or not judged.samples_needed:
-        return judged
-    return replace(judged, samples_needed=None, reason=judged.reason.removesuffix(verdict.demand(judged.samples_needed)))
+    return judged if counted else verdict.uncounted(judged)
 
 
 def found(scene: Scene | str) -> tuple[Scene, suite.Suite]:

@@ -45,6 +45,7 @@ class Judge:
         options = record.run.options
         self._rule = {"triples": max(ladder.TRIPLES, len(record.scenes) * len(options.get("methods", ()))),
                       "replicates": options.get("replicates", 2)}
+        self._counted = options.get("counted", True)
         self._known = cache(self._look_up)
 
     def scene(self, results: Sequence[Result]) -> Scene:
@@ -60,6 +61,7 @@ class Judge:
         scene = self.scene(results)
         reference, missing = self._known(scene)
         judged = verdict.judge(results, reference, scene, **self._rule)
+        judged = judged if self._counted else verdict.uncounted(judged)
         return replace(judged, reason=missing) if judged.outcome is Outcome.NO_REFERENCE else judged
 
     def decide(self, results: Sequence[Result]) -> Decision:

@@ -148,6 +148,13 @@ def demand(samples_needed: int) -> str:
     return f"; {samples_needed:,} samples would decide"
 
 
+def uncounted(judged: Verdict) -> Verdict:
+    """The verdict without the samples that would decide it: for films of which nobody knows how many went into them."""
+    if not judged.samples_needed:
+        return judged
+    return replace(judged, samples_needed=None, reason=judged.reason.removesuffix(demand(judged.samples_needed)))
+
+
 def _step(rung: Rung, finding: Finding) -> Step:
     mean, worst = rung.scale.tiles, int(np.argmax(rung.reach[:rung.scale.tiles]))
     low, high = rung.bias - rung.half_width, rung.bias + rung.half_width
