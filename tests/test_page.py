@@ -21,6 +21,7 @@ from lightproof.method import Unavailable
 from lightproof.reporting import charts, citations, page
 from lightproof.reporting.colours import LIGHT, SIGNED, film_image
 from lightproof.reporting.evaluation import Evaluation, evaluate
+from lightproof.reporting.families import Family, families
 from lightproof.reporting.scene_view import SceneView, round_up
 from lightproof.verdict import Outcome
 
@@ -80,6 +81,27 @@ def test_findings_are_the_wrong_the_broken_and_the_biased_in_this_order(evaluati
     assert found == 3 * ["mc-cosine"] + 3 * ["cycles"] + 3 * ["path"]
 
 
+def test_columns_are_a_readers_own_then_ours_then_the_renderers():
+    """Each renderer with all its configurations, all of ours as one."""
+    columns = families(["mine:Mine", "mitsuba", "mitsuba/scalar", "cycles", "analytic", "mc-area"])
+    counts = {column.name: len(column.methods) for column in columns}
+    assert list(counts.items()) == [("mine:Mine", 1), ("ours", 2), ("mitsuba", 2), ("cycles", 1)]
+
+
+def test_the_best_of_a_family(evaluation):
+    """analytic is exact at once, mc-area has noise, mc-cosine is wrong; of crashed and refused ones whatever there is."""
+    scene = evaluation.scenes[0]
+
+    def best(*methods: str) -> str:
+        return Family("any", methods).best(evaluation, scene).method
+
+    assert best("mc-cosine", "mc-area", "analytic") == "analytic"
+    assert best("mc-cosine", "mc-area") == "mc-area"
+    assert best("cycles", "mc-cosine") == "mc-cosine"
+    assert best("pyrender", "cycles") == "cycles"
+    assert Family("any", ("luxcore",)).best(evaluation, scene) is None
+
+
 def test_what_no_finite_run_excludes_is_said_once(html):
     assert html.count("rare events") == 1
 
@@ -89,7 +111,7 @@ def test_unsupported_is_grey_and_says_why(html):
     badges = re.findall(r'class="badge ([a-z-]+)"><span aria-hidden="true">.</span> ([a-z ]+)', html)
     assert {outcome for outcome, word in badges if word.startswith("unsupported")} == {"unsupported"}
     assert {outcome for outcome, word in badges if word.startswith("pass")} == {"pass"}
-    assert html.count(f"<p>{small_run.REFUSAL}</p>") == 3
+    assert html.count(f"<p>{small_run.REFUSAL}</p>") == 2 * 3  # by family, and of every method
     assert html.count(f"<span>{small_run.REFUSAL}</span>") == 3
 
 

@@ -167,6 +167,12 @@ def test_seconds_to_an_error():
     assert statistics.seconds_to(0.01, [], []) is None
 
 
+def test_a_smaller_error_is_never_sooner():
+    """A first step that the clock found slower than the second counts as the second."""
+    assert statistics.seconds_to(0.01, [3, 1, 2], [0.005, 0.001, 0.0005]) == 1
+    assert statistics.seconds_to(0.0005, [3, 1, 2], [0.005, 0.001, 0.0005]) == 2
+
+
 def test_seconds_to_an_error_reached_without_any_left():
     """10 % at 1 s and nothing at 2 s: at 2 s at the latest."""
     assert statistics.seconds_to(0.01, [1, 2], [0.1, 0]) == 2

@@ -124,9 +124,10 @@ def slope(samples: ArrayLike, rmse: ArrayLike, level: float = 0.05) -> tuple[flo
 def seconds_to(error: float, seconds: Sequence[float], rmse: Sequence[float]) -> float | None:
     """Seconds at which the error first falls to `error`, interpolated on log axes between steps given in order of samples.
 
-    None where no step measured is that good; the first step's seconds, an upper bound, where that one already is.
+    None where no step measured is that good; the first step's seconds, an upper bound, where that one already is. No step
+    counts as slower than a later one.
     """
-    steps = list(zip(seconds, rmse, strict=True))
+    steps = list(zip(np.minimum.accumulate(np.array(seconds, float)[::-1])[::-1], rmse, strict=True))
     if steps and steps[0][1] <= error:
         return float(steps[0][0])
     for (time, before), (later, after) in pairwise(steps):

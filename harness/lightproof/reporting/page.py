@@ -17,6 +17,7 @@ from lightproof.reporting import charts, wording
 from lightproof.reporting.citations import Citation
 from lightproof.reporting.colours import shrunk
 from lightproof.reporting.evaluation import Cell, Evaluation
+from lightproof.reporting.families import families, singly
 from lightproof.reporting.scene_view import SceneView
 from lightproof.reporting.tables import samples_per_second
 from lightproof.scene import Scene
@@ -36,6 +37,8 @@ def render(evaluation: Evaluation, bibliography: Mapping[str, Citation], picture
         evaluation=evaluation,
         run=evaluation.run,
         views=views,
+        families=families(evaluation.methods),
+        singly=singly(evaluation.methods),
         counts=counts,
         answer=answer(counts),
         findings=findings(evaluation),
