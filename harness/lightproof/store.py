@@ -123,7 +123,9 @@ def create(parent: Path, run: Run, scenes: Sequence[Scene]) -> Store:
     tables = [{"id": scene.id, "case": scene.case, "table": scene.to_table()} for scene in scenes]
     try:
         folder.mkdir(parents=True)
-        (folder / "run.json").write_text(json.dumps({"format": FORMAT, **asdict(run), "scenes": tables}, indent=1) + "\n")
+        partial = folder / "run.json.partial"
+        partial.write_text(json.dumps({"format": FORMAT, **asdict(run), "scenes": tables}, indent=1) + "\n")
+        partial.rename(folder / "run.json")
     except OSError as error:
         raise StoreError(f"{folder}: cannot be written ({error.strerror}); give a folder that can, with --out") from None
     return Store(folder, run, scenes)
