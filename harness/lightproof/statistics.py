@@ -15,6 +15,7 @@ from scipy.special import pdtrc, stdtrit
 
 TILES = 64
 CHANCE = 1e-6  # below which equal films are no coincidence
+ROUNDING = 1e-6  # of a value: two that differ by no more may be one sum, added up in another order
 
 
 def simultaneous_quantile(level: float, intervals: int, replicates: int) -> float:
@@ -54,14 +55,14 @@ def repeats(films: np.ndarray) -> bool:
     """Whether some, but not all, of the films (R, n) are the same bit for bit, and more of them than chance explains.
 
     Noise with few values, such as counts of hits at a few points, makes films equal by chance: two of them with the
-    product over elements, taken as independent, of how often distinct films agree there. The number of chance repeats
-    is nearly Poisson. Black films say nothing: no sample has reached the light.
+    product over elements, taken as independent, of how often distinct films agree there, but for rounding. The number of
+    chance repeats is nearly Poisson. Black films say nothing: no sample has reached the light.
     """
     films = films[films.any(axis=1)]
     distinct = np.unique(films, axis=0)
     if len(distinct) in (1, len(films)):
         return False
-    agreeing = sum((first == second).astype(int) for first, second in combinations(distinct, 2))
+    agreeing = sum(np.isclose(first, second, ROUNDING, atol=0).astype(int) for first, second in combinations(distinct, 2))
     chance = np.exp(np.log(np.maximum(agreeing, 0.5) / comb(len(distinct), 2)).sum())
     return bool(pdtrc(len(films) - len(distinct) - 1, chance * comb(len(films), 2)) < CHANCE)
 
