@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -88,9 +89,14 @@ class Cell:
         """The steps whose error and time are known; a time below the clock's tick is not."""
         return [step for step in self.verdict.steps if step.rmse >= 0 and step.seconds_render > 0]
 
+    @property
+    def timed(self) -> bool:
+        """Whether it is known what a film took; nobody knows of a picture from elsewhere."""
+        return not any(math.isnan(step.seconds_render) for step in self.verdict.steps)
+
     def seconds_to(self, error: float) -> float | None:
         """Render seconds until a single film's rms error is `error` (a fraction); None beyond what was measured."""
-        steps = self.verdict.steps
+        steps = self.verdict.steps if self.timed else ()
         return statistics.seconds_to(error, [step.seconds_render for step in steps], [step.rmse for step in steps])
 
     @cached_property
@@ -101,7 +107,7 @@ class Cell:
     @property
     def efficiency(self) -> float | None:
         """1 / (variance x seconds) of a single film [1/s] at the last step, variance in squares of the tolerance scale."""
-        if self.reference is None or self.deviation is None:
+        if self.reference is None or self.deviation is None or not self.timed:
             return None
         variance = len(self.final) * np.mean(self.deviation**2)
         return float(1 / (variance * np.median([result.seconds["render"] for result in self.final])))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from subprocess import SubprocessError
 from typing import Any
@@ -13,13 +13,14 @@ import vl_convert
 from markupsafe import Markup
 
 from lightproof.method import Unavailable
-from lightproof.reporting import charts, wording
+from lightproof.reporting import charts, units, wording
 from lightproof.reporting.citations import Citation
 from lightproof.reporting.colours import shrunk
 from lightproof.reporting.evaluation import Cell, Evaluation
 from lightproof.reporting.families import families, singly
 from lightproof.reporting.scene_view import SceneView
 from lightproof.reporting.tables import samples_per_second
+from lightproof.reporting.units import Factor
 from lightproof.scene import Scene
 from lightproof.verdict import Outcome, Step
 
@@ -29,10 +30,13 @@ DOUBTS = {Outcome.FAIL: "wrong", Outcome.UNDECIDED: "undecided"}
 OTHERWISE = {Outcome.UNSUPPORTED: "unsupported", Outcome.ERROR: "ended in an error", Outcome.NO_REFERENCE: "without a reference"}
 
 
-def render(evaluation: Evaluation, bibliography: Mapping[str, Citation], picture: Callable[[Scene], bytes]) -> str:
-    """The whole page. `picture` gives a scene's set-up as PNG bytes; where it raises, the page says why there is none."""
+def render(evaluation: Evaluation, bibliography: Mapping[str, Citation], picture: Callable[[Scene], bytes],
+           factors: Sequence[Factor] = ()) -> str:
+    """The whole page. `picture` gives a scene's set-up as PNG bytes; where it raises, the page says why there is none.
+    `factors` are the units of renderers as they were measured, in that order."""
     views = [_view(evaluation, scene, bibliography, picture) for scene in evaluation.scenes]
     counts = Counter(cell.verdict.outcome for cell in evaluation.cells)
+    now = units.current(factors, evaluation.run.versions)
     return _environment().get_template("page.html.j2").render(
         evaluation=evaluation,
         run=evaluation.run,
@@ -42,6 +46,9 @@ def render(evaluation: Evaluation, bibliography: Mapping[str, Citation], picture
         counts=counts,
         answer=answer(counts),
         findings=findings(evaluation),
+        factors=now,
+        lights=sorted({factor.light for factor in now}),
+        alarms=units.alarms(factors, now),
         cost=charts.time_to_one_percent(evaluation.cells, evaluation.methods),
         bundle=_bundle(),
     )
@@ -73,7 +80,7 @@ def _environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     environment.filters |= {name: getattr(wording, name) for name in ("number", "percent", "seconds", "count", "moment")}
-    environment.filters |= {filter.__name__: filter for filter in (charts.slope, time_to, error_at, bias, worst_tile)}
+    environment.filters |= {filter.__name__: filter for filter in (charts.slope, time_to, error_at, bias, worst_tile, units.shown)}
     environment.globals |= {"icons": ICONS, "samples_per_second": samples_per_second}
     return environment
 
@@ -103,6 +110,8 @@ def findings(evaluation: Evaluation) -> list[Cell]:
 def time_to(cell: Cell, error: float) -> str:
     """Render time until a single film's rms error is `error`; a bound where the ladder began below it or never came so far."""
     steps = cell.verdict.steps
+    if not cell.timed:
+        return "time unknown"
     found = cell.seconds_to(error)
     if found is None:
         return f"> {wording.seconds(max(step.seconds_render for step in steps))}"

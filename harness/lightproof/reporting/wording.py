@@ -62,7 +62,9 @@ def _fixed(value: float, decimals: int) -> str:
 
 
 def seconds(value: float) -> str:
-    """A duration [s] in the unit that suits it."""
+    """A duration [s] in the unit that suits it; nobody knows one that is no number."""
+    if math.isnan(value):
+        return "unknown"
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
         if value >= size:
             return f"{value / size:.0f} {unit}" if value >= 100 * size else f"{value / size:.2g} {unit}"
