@@ -55,6 +55,7 @@ METHODS = {
         Entry("luxcore", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore"),
         Entry("luxcore/random", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
         Entry("luxcore/bidirectional", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
+        Entry("radiance", "lightproof.renderers.radiance:Radiance", worker="radiance", extra="radiance"),
         Entry("pyrender", "lightproof.renderers.pyrender:Pyrender", worker="pyrender", extra="pyrender"),
     )
 }
