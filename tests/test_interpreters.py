@@ -24,12 +24,13 @@ TARGET = f"{Path(__file__).with_name('elsewhere.py')}:Elsewhere"
 
 @pytest.fixture(scope="module")
 def other(tmp_path_factory) -> Path:
-    """An interpreter with the packages of this one and its own prefix, in which lightproof itself is not installed."""
+    """An interpreter of its own that holds numpy and OpenEXR and nothing else, not even lightproof."""
     folder = tmp_path_factory.mktemp("other")
     venv.create(folder, symlinks=True)
     packages = Path(sysconfig.get_path("purelib", vars={"base": str(folder)}))
-    here = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
-    (packages / "shared.pth").write_text("\n".join(here) + "\n")
+    for path in Path(sysconfig.get_path("platlib")).iterdir():
+        if path.name.lower().startswith(("numpy", "openexr")):
+            (packages / path.name).symlink_to(path)
     return folder / "bin" / "python"
 
 

@@ -1,7 +1,7 @@
 """Films as OpenEXR: 32-bit float channels that tev and Blender open, with what the film is in the header.
 
 Channel Y is the film. A method that computes in float64 keeps its digits: `residual` is what rounding Y to float32 left
-out. `variance` and `quantization` are there where the method knows them.
+out. `variance`, `quantization` and `tessellation` are there where the method knows them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from lightproof import exr
 from lightproof.exr import FilmError
 
-EXTRAS = ("variance", "quantization")
+EXTRAS = ("variance", "quantization", "tessellation")
 PARTIAL = ".partial"  # what a film is called until it is whole
 
 
@@ -65,4 +65,8 @@ def _numbers(image: exr.Image, name: str) -> np.ndarray:
 
 @cache
 def _version() -> str:
-    return metadata.version("lightproof")
+    """Of the package; unknown to an interpreter in which it is not installed, such as one that holds another renderer."""
+    try:
+        return metadata.version("lightproof")
+    except metadata.PackageNotFoundError:
+        return "unknown"

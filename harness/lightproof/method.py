@@ -68,6 +68,11 @@ class Method(ABC):
         """What is known to be wrong with this renderer on this scene, in a sentence for the reader of a verdict; else empty."""
         return ""
 
+    def tessellation(self, scene: Scene) -> np.ndarray | None:
+        """What triangles in the place of round shapes change of the film at most, (n,) [unit of the film], infinite where that
+        is not known; None where every shape is the renderer's own."""
+        return None
+
     @abstractmethod
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         """Build the scene and compile what it needs; returns seconds by phase where it can tell setup and compile apart."""

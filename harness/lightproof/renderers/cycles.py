@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from lightproof.method import Method, Rendering
-from lightproof.renderers import cycles_scene, importing, mesh, options, transport, views
+from lightproof.renderers import cycles_scene, importing, mesh, options, tessellation, transport, views
 from lightproof.renderers.views import View
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, Environment, PointLight, Scene
 
@@ -96,6 +96,11 @@ class Cycles(Method):
         if self.configuration.emitters == LAMPS and not _lamps_fit(scene):
             return "Cycles' lamps block no light: what would fall on the back of one passes through it."
         return ""
+
+    def tessellation(self, scene: Scene) -> np.ndarray | None:
+        lamps = [light for light in scene.lights if self.lamps and isinstance(light, AreaLight)]
+        native = {light.id for light in lamps if cycles_scene.has_lamp(light.shape)}
+        return tessellation.difference(scene, tessellation.meshes(scene, native))
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()

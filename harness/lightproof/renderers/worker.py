@@ -66,6 +66,7 @@ class Host:
     def __init__(self) -> None:
         self._methods: dict[str, Method] = {}
         self._scenes: dict[str, Scene] = {}
+        self._tessellations: dict[str, np.ndarray | None] = {}
 
     def open(self, method: str, target: str, threads: int) -> dict[str, Any]:
         """What a method says about itself, or why it is unavailable."""
@@ -91,7 +92,7 @@ class Host:
         start = time.perf_counter()
         named = opened.prepare(scene)
         seconds = phases(named, time.perf_counter() - start, rest="setup")
-        self._scenes[method] = asked
+        self._scenes[method], self._tessellations[method] = asked, opened.tessellation(scene)
         return {"seconds": seconds, "settings": dict(opened.settings()), "precision": opened.precision,
                 "caveat": opened.caveat(scene)}
 
@@ -106,7 +107,8 @@ class Host:
             return {"unsupported": str(reason) or f"{method} does not implement it"}
         seconds = phases(rendering.seconds, time.perf_counter() - start, rest="render")
         header = {"method": method, "method_version": opened.version(), "samples": str(rendering.samples), "seed": str(seed)}
-        films.write(Path(film), scene.film.grid, channels(rendering, scene.size), {**about(scene), **header})
+        given = channels(rendering, scene.size, self._tessellations[method])
+        films.write(Path(film), scene.film.grid, given, {**about(scene), **header})
         return {"samples": int(rendering.samples), "seconds": seconds, "peak_memory_mb": peak_memory_mb()}
 
 
@@ -116,9 +118,9 @@ def phases(named: Mapping[str, float], elapsed: float, rest: str) -> dict[str, f
     return {**others, rest: max(0.0, elapsed - sum(others.values()))}
 
 
-def channels(rendering: Rendering, size: int) -> dict[str, np.ndarray]:
+def channels(rendering: Rendering, size: int, tessellation: np.ndarray | None = None) -> dict[str, np.ndarray]:
     """The arrays of a rendering, (n,) each. Raises FilmError where one is misshapen."""
-    given = {"Y": rendering.film, "variance": rendering.variance}
+    given = {"Y": rendering.film, "variance": rendering.variance, "tessellation": tessellation}
     if np.any(rendering.quantization):
         given["quantization"] = np.broadcast_to(rendering.quantization, (size,))
     for name, values in given.items():
