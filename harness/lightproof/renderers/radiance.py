@@ -1,0 +1,103 @@
+"""Radiance, through its own programs oconv and rtrace.
+
+Irradiance is what `rtrace -I` measures at points of the film, with nothing laid into it; radiance is what rtrace sees along
+lines of sight. Radiance's numbers are radiances per channel; the first channel is taken and no luminous efficacy applied.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import math
+import tempfile
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lightproof.method import Method, Rendering
+from lightproof.renderers import importing, radiance_rays, radiance_scene, radiance_transport, transport
+from lightproof.renderers.radiance_process import Programs, Rtrace
+from lightproof.scene import CameraFilm, DirectionalLight, PointLight, PointsFilm, Scene, SunDisc
+
+SHAPES, SCENE, OCTREE = "shapes.cal", "scene.rad", "scene.oct"
+STRATA = 64  # parts of a lamp or of the hemisphere, each sampled once from each point
+AT_ONCE = 1 << 18  # rays made at a time
+EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-dj", "1", "-st", "1", "-lw", "0", "-aa", "0", "-as", "0"]
+"""No shadow ray is left out, lamps are sampled all over, no path is cut by its weight, no indirect light interpolated."""
+
+
+class Radiance(Method):
+    """Radiance with every approximation off; by options as it is used: `radiance/quasi-random`."""
+
+    def __init__(self, name: str, threads: int):
+        super().__init__(name, threads)
+        self.option = name.partition("/")[2]
+        self.rtrace: Rtrace | None = None
+
+    def open(self) -> None:
+        folder = Path(importing.renderer("pyradiance", "radiance").__file__).parent
+        memory = "/dev/shm" if Path("/dev/shm").is_dir() else None
+        self.folder = tempfile.TemporaryDirectory(prefix="lightproof-", dir=memory)
+        self.programs = Programs(folder, Path(self.folder.name))
+
+    def version(self) -> str:
+        radiance = self.programs.output("rtrace", "-version").decode().split()[1]
+        return f"{radiance} (pyradiance {importlib.metadata.version('pyradiance')})"
+
+    def settings(self) -> Mapping[str, Any]:
+        return {"options": " ".join(self.options), "strata": self.strata, "processes": 1}
+
+    def unsupported(self, scene: Scene) -> str | None:
+        if scene.film.quantity == "solid_angle":
+            return "Radiance gives no solid angles"
+        if any(isinstance(light, SunDisc) for light in scene.lights):
+            return "Radiance samples a distant disc unevenly"
+        return transport.unsupported(scene) or radiance_transport.unsupported(scene)
+
+    def prepare(self, scene: Scene) -> Mapping[str, float]:
+        start = time.perf_counter()
+        self.film = scene.film
+        self.strata, self.options = strata(scene), options(scene, self.option)
+        place = Path(self.folder.name)
+        (place / SHAPES).write_text(radiance_scene.SHAPES)
+        (place / SCENE).write_text(radiance_scene.describe(scene, SHAPES))
+        (place / OCTREE).write_bytes(self.programs.output("oconv", place / SCENE))
+        if self.rtrace:
+            self.rtrace.close()
+        self.rtrace = self.programs.rtrace(self.options, place / OCTREE)
+        return {"setup": time.perf_counter() - start}
+
+    def render(self, samples: int, seed: int) -> Rendering:
+        generator = np.random.default_rng(seed)
+        points = math.ceil(samples / self.strata)
+        passes = math.ceil(points * math.prod(self.film.grid) / AT_ONCE)
+        each = math.prod(radiance_rays.strata(math.ceil(points / passes)))
+        film = np.mean([self._pass(each, generator) for _ in range(passes)], axis=0)
+        return Rendering(film, samples=passes * each * self.strata)
+
+    def _pass(self, count: int, generator: np.random.Generator) -> np.ndarray:
+        values = self.rtrace.trace(radiance_rays.rays(self.film, count, generator))
+        return values.reshape(-1, count).mean(axis=1)
+
+
+def strata(scene: Scene) -> int:
+    """Parts of each lamp, or of the hemisphere, that are sampled from one point. One where paths go on from there; and where
+    each element counts by itself, because Radiance leaves out a part that it sees at a cosine below 1e-4 times their number."""
+    planned, lamps = radiance_transport.transport_of(scene), radiance_transport.lamps(scene)
+    if planned.bounces:
+        aimed = planned.aims and (lamps or any(isinstance(light, PointLight | DirectionalLight) for light in scene.lights))
+        return STRATA if planned.bounces == 1 and not aimed else 1
+    looks = not isinstance(scene.film, CameraFilm) or scene.reflects
+    each = isinstance(scene.film, PointsFilm) or scene.tolerance_scale == "element"
+    return STRATA if lamps and looks and not each else 1
+
+
+def options(scene: Scene, option: str) -> list[str]:
+    """Of rtrace: as many bounces as count, a lamp or the hemisphere in `strata`."""
+    bounces, parts = radiance_transport.transport_of(scene).bounces, strata(scene)
+    lamps = ["-ds", "0" if bounces or parts == 1 else "1e-4"]
+    around = ["-ab", str(bounces), "-ad", str(parts if bounces else 1), "-lr", str(bounces + 1)]
+    irradiance = [] if isinstance(scene.film, CameraFilm) else ["-I+"]
+    return [*EXACT, *lamps, *around, *irradiance, "-u-" if option == "quasi-random" else "-u+"]
