@@ -1,4 +1,4 @@
-"""try each renderer, and say how to install what is missing"""
+"""try each renderer, and say how to install what is missing; hold a renderer of your own to the protocol"""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 
-from lightproof import machine, suite
+from lightproof import conformance, machine, suite
 from lightproof.cli import selection
 from lightproof.cli.status import DONE, INCOMPLETE
 from lightproof.references import ReferenceError
 from lightproof.renderers.doctor import SAMPLES, Examination, examine
+from lightproof.renderers.registry import Entry
 from lightproof.trial import Status
 
 TRIAL_SCENES = ("square-light", "point-light", "sphere-furnace")
@@ -20,20 +21,34 @@ TRIAL_SCENES = ("square-light", "point-light", "sphere-furnace")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Which methods."""
-    parser.add_argument("methods", nargs="*", metavar="METHOD", help="name, glob, module:Class or file.py:Class (default: all)")
+    parser.add_argument("methods", nargs="*", metavar="METHOD",
+                        help="name, glob, module:name, file.py:name, or the manifest of a renderer of your own (default: all)")
 
 
 def run(options: argparse.Namespace) -> int:
-    """One line for each method; 3 where one that is installed does not render."""
+    """One line for each method, several for a manifest; 3 where one that is installed does not render, or a check fails."""
     console, home = Console(emoji=False, highlight=False, soft_wrap=True), suite.default()
-    scenes = [home.scene(name) for name in TRIAL_SCENES]
-    broken = False
-    for entry in selection.methods(options.methods, tags=[selection.NIGHTLY]):
-        examination = examine(entry, scenes, machine.usable_cores())
-        found = f"{examination.version or 'is not there'}: {_finding(examination, home)}"
-        console.print(f"[bold]{escape(entry.name)}[/] {escape(found)}")
-        broken |= examination.result is not None and examination.result.status is Status.ERROR
-    return INCOMPLETE if broken else DONE
+    fine = [_conforms(entry, home, console) if conformance.applies(entry) else _renders(entry, home, console)
+            for entry in selection.methods(options.methods, tags=[selection.NIGHTLY])]
+    return DONE if all(fine) else INCOMPLETE
+
+
+def _conforms(entry: Entry, home: suite.Suite, console: Console) -> bool:
+    """One line for each check of the protocol; whether all are passed."""
+    console.print(f"[bold]{escape(entry.name)}[/]")
+    fine = True
+    for check in conformance.examine(entry, home, machine.usable_cores()):
+        fine &= check.passed
+        console.print(f"  {'[green]pass[/]' if check.passed else '[red]FAIL[/]'}  {escape(f'{check.name}: {check.reason}')}")
+    return fine
+
+
+def _renders(entry: Entry, home: suite.Suite, console: Console) -> bool:
+    """One line; whether the method renders, or is not there."""
+    examination = examine(entry, [home.scene(name) for name in TRIAL_SCENES], machine.usable_cores())
+    found = f"{examination.version or 'is not there'}: {_finding(examination, home)}"
+    console.print(f"[bold]{escape(entry.name)}[/] {escape(found)}")
+    return examination.result is None or examination.result.status is not Status.ERROR
 
 
 def _finding(examination: Examination, home: suite.Suite) -> str:

@@ -82,7 +82,6 @@ class Manifest(Checked):
     precision: str = checked.choice("float16", "float32", "float64", default="float32")
     supports: Supports = fields.nested(Supports, default=Supports())
 
-
     def entry(self, path: Path) -> Entry:
         """The method that the manifest at `path` describes."""
         return Entry(self.name, f"{path}:Outside", worker=str(path))

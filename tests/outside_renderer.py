@@ -1,0 +1,116 @@
+"""A renderer outside, for tests: `outside_renderer.py MODE FAULT [JOB]`, or `--version`. It misbehaves as FAULT says.
+
+It imports nothing of Lightproof: it reads jobs and writes answers as examples/README.md has them, for one point light over
+a plane, with relative noise of 0.2 / sqrt(samples).
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+
+def light(scene: dict) -> list[float]:
+    """Irradiance at the centre of each cell of a horizontal plane: I cos / r2 [W/m2]."""
+    (lamp,), film = scene["light"], scene["film"]
+    columns, rows = film["resolution"]
+    values = []
+    for row in range(rows):
+        for column in range(columns):
+            a, b = (column + 0.5) / columns, (row + 0.5) / rows
+            frame = zip(lamp["position"], film["origin"], film["u"], film["v"], strict=True)
+            way = [p - (o + a * u + b * v) for p, o, u, v in frame]
+            values.append(lamp["intensity"] * way[2] / math.hypot(*way) ** 3)
+    return values
+
+
+def rendered(job: dict, fault: str) -> dict:
+    """The honest answer, or one that is wrong in its numbers only."""
+    about = {"job": job["job"], "digest": job["digest"]}
+    scene = job["scene"]
+    if [light["kind"] for light in scene["light"]] != ["point"] or scene["film"]["kind"] != "plane" or scene["surface"]:
+        return {**about, "unsupported": "one point light over a plane, and nothing else"}
+    draw = random.Random(0 if fault == "ignores-seed" else job["seed"])
+    spent = 64 if fault == "ignores-samples" else job["samples"]
+    exact = [{"pi": math.pi, "power": 1 / (4 * math.pi)}.get(fault, 1.0) * value for value in light(scene)]
+    film = [value * (1 + draw.gauss(0, 0.2) / math.sqrt(spent)) for value in exact]
+    variance = [(0.2 * value) ** 2 / spent for value in exact]
+    return {**about, "film": film, "samples": job["samples"], "variance": variance, "seconds": {"setup": 1e-4}}
+
+
+def say(answer: object) -> None:
+    print(answer if isinstance(answer, str) else json.dumps(answer), flush=True)
+
+
+def misbehave(fault: str, job: dict, answer: dict) -> None:
+    """Answer one job, or not."""
+    if fault == "exits":
+        sys.exit("out of photons \x1b[2J<script>")
+    elif fault == "crashes":
+        os.kill(os.getpid(), signal.SIGSEGV)
+    elif fault == "fails-after":
+        say(answer)
+        sys.exit(4)
+    elif fault == "hangs":
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        time.sleep(3600)
+    elif fault == "closes-output":
+        os.close(1)
+        time.sleep(3600)
+    elif fault == "floods":
+        while True:
+            os.write(1, b"light " * 10_000)
+    elif fault == "twice-later":
+        say(answer)
+        time.sleep(0.05)
+        say(answer)
+    elif fault == "leaves-a-child":
+        subprocess.Popen([sys.executable, "-c", "import time; time.sleep(3600)"], start_new_session=True)
+        say(answer)
+    elif fault == "half-an-image":
+        with open(job["film"]["path"], "wb") as file:
+            file.write(b"v/1\x01\x02\x00\x00\x00channels")
+        say({**answer, "film": "file"})
+    else:
+        say(ALTERED.get(fault, lambda answer: answer)(answer))
+
+
+ALTERED = {
+    "garbage": lambda answer: "Rendering: 100 % done",
+    "twice": lambda answer: f"{json.dumps(answer)}\n{json.dumps(answer)}",
+    "nan": lambda answer: {**answer, "film": [math.nan, *answer["film"][1:]]},
+    "infinite": lambda answer: json.dumps({**answer, "film": [7777, *answer["film"][1:]]}).replace("7777", "1e999"),
+    "negative": lambda answer: {**answer, "film": [-1.0, *answer["film"][1:]]},
+    "text": lambda answer: {**answer, "film": ["1.0", *answer["film"][1:]]},
+    "short": lambda answer: {**answer, "film": answer["film"][1:]},
+    "short-variance": lambda answer: {**answer, "variance": answer["variance"][1:]},
+    "other-scene": lambda answer: {**answer, "digest": "0" * 64},
+    "other-job": lambda answer: {**answer, "job": "another"},
+    "unknown-field": lambda answer: {**answer, "noise": 0},
+    "no-film": lambda answer: {key: value for key, value in answer.items() if key != "film"},
+    "no-samples": lambda answer: {**answer, "samples": 0},
+    "key-twice": lambda answer: f'{json.dumps(answer)[:-1]}, "samples": 1}}',
+    "deep": lambda answer: "[" * 100_000,
+    "number": lambda answer: "7",
+    "no-file": lambda answer: {**answer, "film": "file"},
+}
+
+
+def main(mode: str, fault: str, file: str = "") -> None:
+    requests = [open(file).read()] if mode == "once" else sys.stdin  # noqa: SIM115
+    for line in requests:
+        job = json.loads(line)
+        misbehave(fault, job, rendered(job, fault))
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--version"]:
+        print("outside 1.0")
+    else:
+        main(*sys.argv[1:])
