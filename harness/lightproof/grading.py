@@ -7,7 +7,6 @@ pictures that differ in nothing but their seed tell their noise, and are judged 
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -77,7 +76,6 @@ def _result(path: Path, scene: Scene, reading: Reading, multiple: int) -> Result
         film=_elements(path, channels["Y"].reshape(grid), scene, reading),
         quantization=0.0 if half is None else _elements(path, half.reshape(grid), scene, reading),
         samples=samples,
-        seconds={"render": math.nan},
         version=header.get("software", header.get("method_version", "")),
         settings=about | ({"samples": samples} if known else {}),
         precision="float32" if half is None else "",

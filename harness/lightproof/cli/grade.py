@@ -70,7 +70,8 @@ def run(options: argparse.Namespace) -> int:
     record = _record(options.out, results, scene, home, grading.counted(results, reading))
     judge = Judge(record)
     verdict = judge.judge(results)
-    _tell(verdict, _doubts(verdict, results, scene, judge, options.quantity), scene, record)
+    unsaid = bool(options.scene and not options.quantity)
+    _tell(verdict, _doubts(verdict, results, scene, judge, unsaid), scene, record)
     return exit_status([verdict.outcome], options.strict, complete=True)
 
 
@@ -94,14 +95,16 @@ def _record(out: Path, results: Sequence[Result], scene: Scene, home: Suite, cou
     return record
 
 
-def _doubts(verdict: Verdict, results: Sequence[Result], scene: Scene, judge: Judge, quantity: str) -> Iterator[str]:
-    """What is likely wrong with pictures that are too few to fail, or with how they were read."""
+def _doubts(verdict: Verdict, results: Sequence[Result], scene: Scene, judge: Judge, unsaid: bool) -> Iterator[str]:
+    """What is likely wrong with pictures that are too few to fail, or with how they were read; `unsaid`: nobody says what
+    quantity they hold."""
+    yield results[0].caveat
     reference = judge.reference(results)
     if verdict.outcome is Outcome.UNDECIDED and reference is not None:
         film = np.mean([result.film for result in results], axis=0)
-        yield diagnose.diagnose(film, np.zeros(scene.size), reference.value, scene) or ""
-    if verdict.outcome is not Outcome.PASS and scene.film.quantity == "irradiance" and not quantity:
-        yield "it was read as irradiance; of a picture of an exported receiver say --quantity radiance"
+        yield (diagnose.diagnose(film, np.zeros(scene.size), reference.value, scene) or "").capitalize()
+    if verdict.outcome is not Outcome.PASS and scene.film.quantity == "irradiance" and unsaid:
+        yield "It was read as irradiance; of a picture of an exported receiver say --quantity radiance"
 
 
 def _tell(verdict: Verdict, doubts: Iterator[str], scene: Scene, record: Store) -> None:
@@ -109,6 +112,6 @@ def _tell(verdict: Verdict, doubts: Iterator[str], scene: Scene, record: Store) 
 
     page = reporting.write(record.folder, homes(record))
     console = Console(emoji=False, highlight=False, soft_wrap=True)
-    reason = "; ".join(filter(None, (verdict.reason, *doubts)))
+    reason = ". ".join(filter(None, (verdict.reason, *doubts)))
     console.print(f"{escape(scene.name)}: [bold]{verdict.outcome}[/]: {escape(reason)}")
     console.print(escape(str(page)))
