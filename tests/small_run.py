@@ -19,6 +19,7 @@ STEPS = (64, 256, 1024, 4096)
 REPLICATES = 16
 SAMPLES_PER_SECOND = 1e6
 NOISE = 0.1  # standard deviation of one sample, of the film's largest value
+TRIANGLES = {"path": lambda size: np.linspace(0, 2e-4, size), "mc-cosine": lambda size: np.full(size, np.inf)}
 HOSTILE = '<img src=x onerror="window.hacked=1">'
 CRASH = "it wrote \x1b[31m<script>window.hacked=1</script>\u202e\udcff and died"
 REFUSAL = "pyrender has no area lights"
@@ -75,7 +76,7 @@ def results(method: str, scene: Scene) -> list[Result]:
         Result(replace(first, samples=samples, replicate=replicate), Status.OK, film=film, samples=samples, threads=2,
                version="1.2.3", seconds={"setup": 0.01, "compile": 0.2, "render": samples * scene.size / SAMPLES_PER_SECOND},
                settings={"sampler": "independent"}, precision="float32",
-               deterministic=method == "analytic")
+               deterministic=method == "analytic", tessellation=TRIANGLES.get(method, lambda size: None)(scene.size))
         for samples in STEPS for replicate, film in enumerate(films(method, scene, samples))
     ]
 
@@ -98,7 +99,8 @@ def make(folder: Path) -> tuple[Store, Suite]:
         if result.film is not None:
             path = record.film_path(result.trial)
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_film(path, (1, len(result.film)), {"Y": result.film}, {})
+            triangles = {} if result.tessellation is None else {"tessellation": result.tessellation}
+            write_film(path, (1, len(result.film)), {"Y": result.film, **triangles}, {})
         record.append(result)
     return store.open(record.folder), suite
 

@@ -15,7 +15,7 @@ from lightproof.reporting.evaluation import Evaluation, evaluate
 
 RESULTS = """run, scene, case, method, version, settings, precision, threads, machine, seed, samples, replicates, outcome,
 bias, bias_low, bias_high, worst_tile_bias, worst_tile_low, worst_tile_high, detectable_bias, tolerance, rmse, max_error,
-seconds_setup, seconds_compile, seconds_render, samples_per_second, peak_memory_mb, message"""
+tessellation, seconds_setup, seconds_compile, seconds_render, samples_per_second, peak_memory_mb, message"""
 SUMMARY = """scene, case, method, outcome, samples, bias, bias_low, bias_high, detectable_bias, tolerance,
 seconds_to_1_percent, seconds_to_0_1_percent, slope, efficiency, message"""
 
@@ -68,6 +68,12 @@ def test_a_method_without_a_film_has_empty_numbers_and_its_reason(written):
     assert (read.outcome, read.message) == ("unsupported", small_run.REFUSAL)
     assert read[["samples", "replicates", "bias", "rmse", "seconds_render", "samples_per_second"]].isna().all()
     assert row(written["summary"], "floor", "pyrender")[["samples", "slope", "efficiency", "seconds_to_1_percent"]].isna().all()
+
+
+def test_what_triangles_change_is_told_apart_from_what_is_known(written):
+    """Up to 2e-4 of the film's largest value for path, not known for mc-cosine, and mc-area has no triangles."""
+    values = [row(written["results"], "floor", method).tessellation for method in ("path", "mc-cosine", "mc-area")]
+    np.testing.assert_allclose(values, [2e-4, np.inf, np.nan], rtol=1e-6)
 
 
 def test_samples_per_second_counts_every_element(written):

@@ -48,6 +48,13 @@ class Cell:
         """What the method itself knows to be wrong with its renderer on this scene."""
         return self.results[0].caveat
 
+    @property
+    def tessellation(self) -> float | None:
+        """What triangles in the place of round shapes change at most, as a fraction of the tolerance scale: infinite where it is
+        not known, None where there are none."""
+        change = self.final[0].tessellation if self.final else None
+        return None if change is None or self.reference is None else float((change / self.scale).max())
+
     @cached_property
     def film(self) -> np.ndarray:
         """Mean over the last step's replicates (n,) in the film's unit."""

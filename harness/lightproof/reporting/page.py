@@ -79,8 +79,10 @@ def _environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {name: getattr(wording, name) for name in ("number", "percent", "seconds", "count", "moment")}
-    environment.filters |= {filter.__name__: filter for filter in (charts.slope, time_to, error_at, bias, worst_tile, units.shown)}
+    spoken = ("number", "percent", "seconds", "count", "moment", "triangles")
+    environment.filters |= {name: getattr(wording, name) for name in spoken}
+    own = (charts.slope, time_to, error_at, bias, worst_tile, units.shown)
+    environment.filters |= {filter.__name__: filter for filter in own}
     environment.globals |= {"icons": ICONS, "samples_per_second": samples_per_second}
     return environment
 

@@ -15,8 +15,8 @@ from lightproof.verdict import Step
 RESULTS = (
     "run", "scene", "case", "method", "version", "settings", "precision", "threads", "machine", "seed", "samples", "replicates",
     "outcome", "bias", "bias_low", "bias_high", "worst_tile_bias", "worst_tile_low", "worst_tile_high", "detectable_bias",
-    "tolerance", "rmse", "max_error", "seconds_setup", "seconds_compile", "seconds_render", "samples_per_second",
-    "peak_memory_mb", "message",
+    "tolerance", "rmse", "max_error", "tessellation", "seconds_setup", "seconds_compile", "seconds_render",
+    "samples_per_second", "peak_memory_mb", "message",
 )  # fmt: skip
 SUMMARY = (
     "scene", "case", "method", "outcome", "samples", "bias", "bias_low", "bias_high", "detectable_bias", "tolerance",
@@ -52,6 +52,7 @@ def _rows(evaluation: Evaluation, cell: Cell) -> Iterator[dict[str, Any]]:
         "machine": run.machine,
         "seed": run.seed,
         "tolerance": cell.verdict.tolerance,
+        "tessellation": cell.tessellation,
     }
     if not cell.verdict.steps:
         yield {**shared, "outcome": str(cell.verdict.outcome), "message": cell.verdict.reason}

@@ -41,6 +41,13 @@ def percent(value: float, digits: int = 2) -> str:
     return f"{_fixed(100 * value, max(0, digits - 1 - _exponent(100 * value)))} %"
 
 
+def triangles(change: float) -> str:
+    """What is to be said of triangles that change a film by `change` of the tolerance scale."""
+    if not math.isfinite(change):
+        return "what triangles change here, in the place of round shapes, is not known"
+    return f"of which at most {percent(change) if change < 1 else 'all'} comes from triangles"
+
+
 def interval(low: float, high: float) -> str:
     """An interval of fractions as centre ± half width in per cent, to two digits of the half width and at most four decimals."""
     centre, half = 50 * (low + high), 50 * (high - low)
