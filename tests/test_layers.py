@@ -11,7 +11,7 @@ SOURCE = Path(lightproof.__file__).parent
 
 LAYERS = [
     {"checked"},
-    {"radiometry", "geometry", "statistics"},
+    {"radiometry", "geometry", "statistics", "typed"},
     {"scene"},
     {"scene_file", "exr"},
     {"trial", "references", "films", "method", "sketch"},

@@ -103,7 +103,7 @@ def test_what_is_right_passes():
 @pytest.mark.parametrize(("renderer", "message"), [
     (too_bright, r"test_plugin:too_bright on point-light: fail: .* is off by .*pi"),
     (noisy, r"undecided: .*; [\d,]+ samples would decide \(it had 60 s and at most 256 samples\)"),
-    (forgets_the_seed, r"takes \(scene: .*\) -> .*, but is called with \(scene, samples, seed\): too many positional arguments"),
+    (forgets_the_seed, r"takes \(scene: .*\) -> .*, but is called with \(scene, samples, seed\): too many positional"),
     (forgets_to_return, r"the film is None: does the function return it\? It must be an array of shape \(192,\)"),
     (transposed, r"the film has shape \(16, 12\); it must be an array of shape \(192,\), row by row, or \(12, 16\)"),
     (speechless, r"the film is 'light', which holds no numbers"),

@@ -15,6 +15,7 @@ from typing import get_type_hints
 
 import pandas
 
+from lightproof.checked import plain
 from lightproof.verdict import Outcome
 
 Key = tuple[str, str, str]
@@ -56,10 +57,10 @@ def read(path: Path) -> dict[Key, State]:
         states = [State(*row) for row in table.itertuples(index=False)]
     except (OSError, ValueError, KeyError) as error:
         advice = "make one with 'lightproof gate --run RUN' and copy its state here"
-        raise BaselineError(f"{path}: is no baseline ({error}); {advice}") from None
+        raise BaselineError(f"{path}: is no baseline ({plain(str(error))}); {advice}") from None
     unknown = sorted({state.outcome for state in states} - set(Outcome))
     if unknown:
-        raise BaselineError(f"{path}: {unknown[0]!r} is no outcome; the outcomes are {', '.join(Outcome)}")
+        raise BaselineError(f"{path}: {unknown[0]!a} is no outcome; the outcomes are {', '.join(Outcome)}")
     return {state.key: state for state in states}
 
 

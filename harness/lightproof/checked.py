@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, ClassVar
 
 SHORTEST, FARTHEST = 1e-150, 1e150  # m: a binary64 holds the squares of all lengths between
+LONGEST_LINE = 400
 KEBAB_CASE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 VECTOR = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 
@@ -82,6 +83,12 @@ def only(table: Any, known: Sequence[str], required: Iterable[str]) -> None:
     for key in required:
         if key not in table:
             raise SceneError(key, "is missing; it must be given")
+
+
+def plain(text: str) -> str:
+    """What a stranger says, as one line of bearable length that no terminal obeys."""
+    line = " ".join("".join(char if char.isprintable() else " " for char in text).split())
+    return line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]}..."
 
 
 def shown(value: Any) -> str:

@@ -60,7 +60,7 @@ def _own(renderer: Callable) -> Entry:
     """A function or class of the user's, to be found again by the worker."""
     name = getattr(renderer, "__qualname__", "<a nameless object>")
     if not name.isidentifier():
-        raise ValueError(f"{name} is not at the top level of a file, where the process that runs it could find it; move it there")
+        raise ValueError(f"{name} is not at the top level of a file, where its own process could find it; move it there")
     file = Path(inspect.getfile(inspect.unwrap(renderer))).resolve()
     where = renderer.__module__ if (file.parent / "__init__.py").exists() else str(file)
     return Entry(f"{file.stem}:{name}", f"{where}:{name}", worker=where)

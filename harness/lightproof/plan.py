@@ -9,11 +9,12 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Any
 
-from lightproof import machine
+from lightproof import machine, typed
+from lightproof.checked import plain
 from lightproof.renderers.registry import Entry
 from lightproof.runner import Cell
 from lightproof.scene import Scene
-from lightproof.store import Run, Store
+from lightproof.store import Run, Store, StoreError
 from lightproof.suite import Suite
 
 
@@ -40,7 +41,11 @@ def describe(scenes: Mapping[Scene, Suite], methods: Iterable[Entry], threads: i
 
 
 def cells(record: Store) -> list[Cell]:
-    """Every method on every scene of a run, as its options say."""
+    """Every method on every scene of a run, as its options say. Raises StoreError."""
     options = record.run.options
-    entries = [Entry(**entry) for entry in options["methods"]]
-    return [Cell(scene, entry, options["cell_budget"], options["replicates"]) for scene in record.scenes for entry in entries]
+    try:
+        entries = [typed.check(Entry(**entry)) for entry in options["methods"]]
+        budget, replicates = options["cell_budget"], options["replicates"]
+    except (KeyError, TypeError) as error:
+        raise StoreError(f"{record.folder / 'run.json'}: its plan is broken ({plain(str(error))}); start a new run") from None
+    return [Cell(scene, entry, budget, replicates) for scene in record.scenes for entry in entries]

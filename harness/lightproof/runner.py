@@ -15,7 +15,7 @@ from statistics import median
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import Entry
 from lightproof.scene import Scene
-from lightproof.store import Store
+from lightproof.store import Store, StoreError
 from lightproof.trial import Result, Status, Trial
 
 FIRST_SAMPLES = 64
@@ -185,7 +185,7 @@ class Runner:
         """All cells with their results, once the budget is spent or nothing is left that is worth its time. What the store
         already holds is taken up and not run again."""
         for result in self._store.results():
-            self._cells[result.trial.scene, result.trial.case, result.trial.method].add(result)
+            self._cell(result.trial).add(result)
         for cell in self._cells.values():
             self._judge(cell)
         while self._queue:
@@ -196,6 +196,14 @@ class Runner:
                 self._judge(cell)
         self._report(None)
         return list(self._cells.values())
+
+    def _cell(self, trial: Trial) -> Cell:
+        """The cell that a recorded trial belongs to."""
+        try:
+            return self._cells[trial.scene, trial.case, trial.method]
+        except KeyError:
+            unknown = f"holds a trial of {trial.method!a} on {trial.scene}:{trial.case}, which is not in its plan"
+            raise StoreError(f"{self._store.folder}: {unknown}; start a new run") from None
 
     def _climb(self, cell: Cell) -> None:
         """Complete one step of a cell's ladder, or stop where it breaks or turns out not to fit."""

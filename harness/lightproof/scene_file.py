@@ -65,8 +65,8 @@ def from_table(table: dict[str, Any], scene_id: str, case: str = BASE) -> Scene:
     """A Scene from its table (as `Scene.to_table` gives it); raises SceneError."""
     checked.only(table, TOP, required=("title", "max_bounces", "tolerance", "film"))
     read = Scene(
-        id=scene_id,
-        case=case,
+        id=checked.to_kebab(scene_id),
+        case=checked.to_kebab(case),
         title=_field(table, "title", checked.to_text),
         tests=_field(table, "tests", checked.to_text, ""),
         tags=_field(table, "tags", _tags, ()),

@@ -13,12 +13,13 @@ import os
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from lightproof import films, scene_file
+from lightproof import films, scene_file, typed
+from lightproof.checked import plain, shown
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status, Trial
 
@@ -59,7 +60,7 @@ class Store:
 
     def film_path(self, trial: Trial) -> Path:
         """Where the film of a trial stands: by scene, method, samples and replicate, for people; with its key, to be unique."""
-        scene, case, method = (re.sub(r"[^A-Za-z0-9.-]+", "_", name) for name in (trial.scene, trial.case, trial.method))
+        scene, case, method = (re.sub(r"^\.|[^A-Za-z0-9.-]+", "_", name) for name in (trial.scene, trial.case, trial.method))
         return self.folder / "films" / scene / case / method / f"{trial.samples}-{trial.replicate}-{trial.key[:8]}.exr"
 
     @cached_property
@@ -102,19 +103,25 @@ class Store:
     def _read(self, number: int, line: bytes) -> Result:
         try:
             record = json.loads(line)
-            record |= {"trial": Trial(**record["trial"]), "status": Status(record["status"])}
-            if record["film"]:
-                _, channels, _ = films.read(self.folder / record["film"])
-                record |= {"film": channels["Y"], "variance": channels.get("variance")}
-                record |= {"quantization": channels.get("quantization", 0.0)}
-            return Result(**record)
-        except films.FilmError:
-            raise
-        except (TypeError, KeyError, ValueError) as error:
-            raise StoreError(f"{self._trials}: line {number} is no trial ({error}); mend the file or start a new run") from None
+            has_film = record.pop("film")
+            trial = typed.check(Trial(**record.pop("trial")))
+            result = typed.check(Result(trial, Status(record.pop("status")), **record), besides=("trial", "status", *ARRAYS))
+            if (trial.scene, trial.case) not in {(scene.id, scene.case) for scene in self.scenes}:
+                raise ValueError(f"there is no scene {shown(trial.scene)} with the case {shown(trial.case)} in run.json")
+        except (AttributeError, TypeError, KeyError, ValueError, RecursionError) as error:
+            problem = f"line {number} is no trial ({plain(str(error))})"
+            raise StoreError(f"{self._trials}: {problem}; mend the file or start a new run") from None
+        return replace(result, **self._arrays(trial)) if has_film else result
+
+    def _arrays(self, trial: Trial) -> dict[str, Any]:
+        _, channels, _ = films.read(self.film_path(trial))
+        known = {name: channels.get(name) for name in ("variance", "tessellation")}
+        return {"film": channels["Y"], "quantization": channels.get("quantization", 0.0), **known}
 
 
-ABSENT = ("trial", "film", "variance", "quantization")
+ARRAYS = ("film", "variance", "quantization", "tessellation")
+ABSENT = ("trial", *ARRAYS)
+OPTIONS = {"budget": "float", "cell_budget": "float", "replicates": "int", "methods": "list", "suites": "Mapping[str, str]"}
 
 
 def create(parent: Path, run: Run, scenes: Sequence[Scene]) -> Store:
@@ -144,15 +151,17 @@ def open(folder: Path) -> Store:
     """The run in `folder`. Raises StoreError where there is none, or one of another format."""
     try:
         about = json.loads((folder / "run.json").read_bytes())
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         raise StoreError(f"{folder}: is no run of lightproof; give a folder that 'lightproof run' made") from None
     if not isinstance(about, dict) or about.pop("format", None) != FORMAT:
         raise StoreError(f"{folder}: run.json is not of the format '{FORMAT}'; give a run that this version of lightproof made")
     try:
         scenes = [scene_file.from_table(scene["table"], scene["id"], scene["case"]) for scene in about.pop("scenes")]
-        return Store(folder, Run(**about), scenes)
-    except (TypeError, KeyError, ValueError) as error:
-        raise StoreError(f"{folder / 'run.json'}: is broken ({error}); restore the file, or start a new run") from None
+        typed.check_keys(about["options"], OPTIONS)
+        return Store(folder, typed.check(Run(**about)), scenes)
+    except (AttributeError, TypeError, KeyError, ValueError) as error:
+        problem = f"is broken ({plain(str(error))}); restore the file, or start a new run"
+        raise StoreError(f"{folder / 'run.json'}: {problem}") from None
 
 
 def latest(parent: Path) -> Store:

@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
+from lightproof.checked import plain
 from lightproof.method import Method, Rendering
 from lightproof.renderers import manifest, protocol
-from lightproof.renderers.process import plain
 from lightproof.renderers.program import Program
 from lightproof.renderers.protocol import AnswerError, Declined, FilmFile, Job
 from lightproof.scene import Scene

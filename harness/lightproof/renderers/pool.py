@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from lightproof import films
+from lightproof.checked import plain
 from lightproof.films import FilmError
 from lightproof.method import Unavailable
-from lightproof.renderers.process import LARGEST_FILE, Worker, WorkerDied, WorkerTimeout, plain
+from lightproof.renderers.process import LARGEST_FILE, Worker, WorkerDied, WorkerTimeout
 from lightproof.renderers.registry import Entry
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status, Trial
@@ -134,6 +135,7 @@ class Pool:
             film=channels["Y"],
             variance=channels.get("variance"),
             quantization=channels.get("quantization", 0.0),
+            tessellation=channels.get("tessellation"),
             samples=answer["samples"],
             seconds={**prepared.seconds, **answer["seconds"]},
             version=about.version,
@@ -188,14 +190,15 @@ class Pool:
 
 
 def read_film(path: Path, scene: Scene) -> dict[str, np.ndarray]:
-    """The channels of a film, (n,) each. Raises FilmError where it is no film of `scene`, or not finite, or negative."""
+    """The channels of a film, (n,) each. Raises FilmError where it is no film of `scene`, or not finite, or negative; only what
+    triangles change may be infinite, which means that it is not known."""
     grid, channels, header = films.read(path)
     if header.get("digest") != scene.digest:
         raise FilmError(f"{path}: its header names another scene (digest {header.get('digest')}); it must be {scene.digest}")
     if grid != scene.film.grid:
         raise FilmError(f"{path}: has {grid} rows and columns; it must have {scene.film.grid}")
     for name, values in channels.items():
-        wrong = np.flatnonzero(~(np.isfinite(values) & (values >= 0)))
+        wrong = np.flatnonzero(~((values >= 0) & (np.isfinite(values) | (name == "tessellation"))))
         if wrong.size:
             first = f"the first {values[wrong[0]]:g} in element {wrong[0]}"
             raise FilmError(f"{path}: {wrong.size} of {values.size} values of {name} are no light, {first};"

@@ -17,6 +17,8 @@ from typing import Any
 
 import psutil
 
+from lightproof.checked import plain
+
 BOOTSTRAP = Path(__file__).with_name("bootstrap.py")
 MARK = "LIGHTPROOF_WORKER"
 LARGEST_FILE = 1 << 29
@@ -25,7 +27,6 @@ MOST_CHILDREN = 16
 POLL = 0.2
 QUOTED_LINES = 3
 SILENCE = "; it wrote nothing"
-LONGEST_LINE = 400
 
 
 class WorkerDied(Exception):
@@ -34,12 +35,6 @@ class WorkerDied(Exception):
 
 class WorkerTimeout(WorkerDied):
     """The worker did not answer in time."""
-
-
-def plain(text: str) -> str:
-    """What somebody's renderer says, as one line of bearable length that no terminal obeys."""
-    line = " ".join("".join(char if char.isprintable() else " " for char in text).split())
-    return line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]}..."
 
 
 def ending(status: int) -> str:
@@ -164,7 +159,7 @@ class Worker:
 
     @property
     def crowded(self) -> bool:
-        """Whether the worker has left more processes behind than a renderer needs; for all that is known, never outside Linux."""
+        """Whether the worker has left more processes behind than a renderer needs; unknown but on Linux."""
         with contextlib.suppress(OSError):
             lists = Path(f"/proc/{self._process.pid}/task").glob("*/children")
             return sum(len(each.read_text().split()) for each in lists) > MOST_CHILDREN

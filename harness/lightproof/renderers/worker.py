@@ -36,8 +36,8 @@ PR_SET_CHILD_SUBREAPER = 36
 
 
 def load(target: str) -> Any:
-    """The class or function that `module:name` or `path/to/file.py:name` names. Raises ImportError, AttributeError, OSError, and
-    what the file itself raises."""
+    """The class or function that `module:name` or `path/to/file.py:name` names. Raises ImportError, AttributeError,
+    OSError, and what the file itself raises."""
     where, _, name = target.rpartition(":")
     if where.endswith(".toml"):
         return getattr(importlib.import_module("lightproof.renderers.outside"), name).at(Path(where))
