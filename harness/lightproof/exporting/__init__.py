@@ -35,6 +35,7 @@ class Tool:
 TOOLS = {
     "mitsuba": Tool("lightproof.exporting.mitsuba", ".xml"),
     "blender": Tool("lightproof.exporting.blender", ".blend"),
+    "luxcore": Tool("lightproof.exporting.luxcore", ".cfg"),
     "pbrt": Tool("lightproof.exporting.pbrt", ".pbrt"),
     "usd": Tool("lightproof.exporting.usd", ".usda"),
 }

@@ -17,7 +17,7 @@ import numpy as np
 
 from lightproof.geometry import Disk, Polygon
 from lightproof.method import Method, Rendering
-from lightproof.renderers import importing, luxcore_scene, mesh, transport, views
+from lightproof.renderers import importing, luxcore_scene, mesh, options, tessellation, transport, views
 from lightproof.renderers.luxcore_scene import Stage
 from lightproof.renderers.views import View
 from lightproof.scene import AreaLight, DirectionalLight, Environment, PointLight, Scene
@@ -28,10 +28,11 @@ BOUNCES = 2000  # the most for which its Sobol sequence has dimensions
 SMALLEST = 8  # pixels along a side: of a smaller picture each pixel gets many samples more than were asked for
 POLL = 0.001  # s
 
+BIDIRECTIONAL = "bidirectional"
 ENGINES = {
     "": {"renderengine.type": "PATHCPU", "sampler.type": "SOBOL"},
     "random": {"renderengine.type": "PATHCPU", "sampler.type": "RANDOM"},
-    "bidirectional": {"renderengine.type": "BIDIRCPU", "sampler.type": "SOBOL"},
+    BIDIRECTIONAL: {"renderengine.type": "BIDIRCPU", "sampler.type": "SOBOL"},
 }
 
 
@@ -40,7 +41,7 @@ class LuxCore(Method):
 
     def __init__(self, name: str, threads: int):
         super().__init__(name, threads)
-        self.option = name.partition("/")[2]
+        self.engine = options.chosen(name, ENGINES)
 
     def open(self) -> None:
         for module in BEFORE:
@@ -52,20 +53,20 @@ class LuxCore(Method):
         return self.lux.Version()
 
     def settings(self) -> Mapping[str, Any]:
-        return {**ENGINES[self.option], "path.pathdepth.total": self.config["path.pathdepth.total"],
+        return {**self.engine, "path.pathdepth.total": self.config["path.pathdepth.total"],
                 "film.filter.type": self.config["film.filter.type"], "sphere_triangles": 20 * 4**mesh.SPHERE}
 
     def unsupported(self, scene: Scene) -> str | None:
         for light in scene.lights:
             if not isinstance(light, AreaLight | PointLight | DirectionalLight | Environment):
                 return "LuxCore is not given sun discs or overcast skies yet"
-        if self.option == "bidirectional" and _stops_early(scene):
+        if self.engine == ENGINES[BIDIRECTIONAL] and _stops_early(scene):
             return "LuxCore's bidirectional tracer cannot stop after a number of reflections: it joins paths of every two lengths"
         return transport.unsupported(scene, BOUNCES) or views.unsupported(scene)
 
     def caveat(self, scene: Scene) -> str:
         known = []
-        if self.option == "bidirectional" and any(isinstance(light, DirectionalLight) for light in scene.lights):
+        if self.engine == ENGINES[BIDIRECTIONAL] and any(isinstance(light, DirectionalLight) for light in scene.lights):
             known.append("LuxCore's bidirectional tracer weights directional lights wrongly, by an amount that depends on where"
                          " the camera stands; its path tracer is right.")
         if self.threads > 1:
@@ -73,9 +74,12 @@ class LuxCore(Method):
                          " is too bright by the share of a few samples.")
         return " ".join(known)
 
+    def tessellation(self, scene: Scene) -> np.ndarray | None:
+        return tessellation.difference(scene, tessellation.meshes(scene, luxcore_scene.lamps(scene)))
+
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()
-        self.config = {**luxcore_scene.configuration(scene), **ENGINES[self.option], "native.threads.count": self.threads}
+        self.config = {**luxcore_scene.configuration(scene), **self.engine, "native.threads.count": self.threads}
         self.views = views.views(scene)
         contents = luxcore_scene.contents(scene)
         self.scenes = [self._scene(contents, luxcore_scene.seen(view, _block(view))) for view in self.views]

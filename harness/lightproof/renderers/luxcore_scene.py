@@ -6,6 +6,7 @@ too, 4 pi^2 r^2 L; that of a sharp distant light is the irradiance across the be
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import replace
 from typing import Any
 
@@ -24,9 +25,9 @@ RECTANGLE = np.array([[0, 1, 2], [0, 2, 3]])
 
 class Stage:
     """`properties` by their dotted names; `meshes`, and `images` (rows, columns) in float32, by the names that these use.
-    With `lamps`, a sphere light is LuxCore's own, which nothing sees and which blocks nothing."""
+    The lights whose ids are `lamps` are LuxCore's own spheres, which nothing sees and which block nothing."""
 
-    def __init__(self, lamps: bool = False):
+    def __init__(self, lamps: Container[str] = ()):
         self.lamps = lamps
         self.properties: dict[str, Any] = {}
         self.meshes: dict[str, Mesh] = {}
@@ -44,7 +45,7 @@ class Stage:
             case Environment():
                 self.images[light.id] = np.repeat(np.float32([[1] * 4, [0] * 4]), SKY_ROWS // 2, axis=0)
                 self._lamp(light.id, "infinite", light.radiance, file=light.id)
-            case AreaLight(shape=Sphere() as ball) if self.lamps:
+            case AreaLight(shape=Sphere() as ball) if light.id in self.lamps:
                 power = 4 * np.pi**2 * ball.radius**2 * light.radiance
                 self._lamp(light.id, "sphere", power, position=list(ball.center), radius=ball.radius)
             case AreaLight():
@@ -84,10 +85,17 @@ class Stage:
         self.properties |= {f"{prefix}.{field}": value for field, value in fields.items()}
 
 
+def lamps(scene: Scene) -> set[str]:
+    """The ids of sphere lights that nothing has to see, and from which nothing else has to be hidden."""
+    alone = len(scene.lights) == 1 and not any(surface.radiance for surface in scene.surfaces)
+    if not alone or scene.reflects or isinstance(scene.film, CameraFilm):
+        return set()
+    return {light.id for light in scene.lights if isinstance(light, AreaLight) and isinstance(light.shape, Sphere)}
+
+
 def contents(scene: Scene) -> Stage:
     """The lights and surfaces of a scene."""
-    alone = len(scene.lights) == 1 and not any(surface.radiance for surface in scene.surfaces)
-    made = Stage(lamps=alone and not scene.reflects and not isinstance(scene.film, CameraFilm))
+    made = Stage(lamps(scene))
     for light in scene.lights:
         made.light(light)
     for surface in scene.surfaces:
