@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from lightproof import suite
+from lightproof.renderers import cycles, mitsuba_configurations, tessellation
+from lightproof.renderers.cycles import Cycles
+from lightproof.renderers.mitsuba import Mitsuba
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS
 from lightproof.trial import Result, Status, Trial
@@ -61,3 +64,54 @@ def test_light_of_a_square(pool: Pool, name: str, tmp_path):
     assert {key: result.settings[key] for key in CONFIGURATIONS[name]} == CONFIGURATIONS[name]
     assert result.film.mean() == pytest.approx(EXACT.mean(), rel=0.005)
     assert np.sqrt(np.mean((result.film - EXACT) ** 2)) < 0.05 * EXACT.max()
+
+
+@pytest.mark.parametrize(("adapter", "known"), [
+    (Mitsuba, "scalar, spectral, independent, stratified, orthogonal, sobol, emitter-sampling, mis, path"),
+    (Cycles, "lamp, mesh, light-tree, blue-noise, automatic"),
+])
+def test_unknown_configurations_list_the_known_ones(adapter, known):
+    """A name behind the / that no configuration has."""
+    with pytest.raises(ValueError, match=f"renderer has no configuration 'fast'; there are {known}, and renderer alone"):
+        adapter("renderer/fast", threads=1)
+
+
+@pytest.mark.parametrize("adapter", [mitsuba_configurations, cycles])
+def test_every_configuration_is_a_method(adapter):
+    """The registry has each by name; all but the best are left to the night."""
+    name = adapter.__name__.rpartition(".")[2].partition("_")[0]
+    entries = {key: entry for key, entry in METHODS.items() if key.partition("/")[0] == name}
+    assert {key.partition("/")[2] for key in entries} == set(adapter.CONFIGURATIONS)
+    assert [key for key, entry in entries.items() if not entry.nightly] == [name]
+
+
+@pytest.mark.parametrize(("name", "scene", "reason"), [
+    ("mitsuba/emitter-sampling", "sphere-furnace", "follows reflections only by its path tracer, which samples directions too"),
+    ("mitsuba/spectral", "white-furnace-plane:tilted", "spectral sky map has the colour of daylight, and no flat spectrum"),
+    ("cycles/lamp", "triangle-light", "lamps are spheres, disks and rectangles, and 'lamp' is none"),
+    ("cycles/lamp", "square-light-seen", "lamps are not seen from behind"),
+    ("cycles/lamp", "square-light", None),
+    ("cycles/mesh", "triangle-light", None),
+])
+def test_what_a_configuration_cannot_do(name, scene, reason):
+    adapter = Mitsuba if name.startswith("mitsuba") else Cycles
+    refusal = adapter(name, threads=1).unsupported(suite.default().scene(scene))
+    assert refusal is None if reason is None else refusal.endswith(reason)
+
+
+def test_lamps_that_block_nothing_are_told():
+    """cycles/lamp warns where two lamps may hide each other, and not under a lone one."""
+    lamp = Cycles("cycles/lamp", threads=1)
+    assert lamp.caveat(SCENE) == ""
+    assert lamp.caveat(suite.default().scene("two-lights")).startswith("Cycles' lamps block no light")
+    assert Cycles("cycles/mesh", threads=1).caveat(suite.default().scene("two-lights")) == ""
+
+
+def test_what_triangles_change_comes_with_the_film(pool, tmp_path):
+    """sphere-light by an emitting mesh: as computed from its triangles. By Blender's lamp and by Mitsuba's sphere: nothing."""
+    scene = suite.default().scene("sphere-light")
+    meshed = render(pool, "cycles/mesh", tmp_path, scene, samples=16)
+    computed = tessellation.difference(scene, tessellation.meshes(scene))
+    np.testing.assert_allclose(meshed.tessellation, computed, rtol=1e-6)
+    for native in ("cycles", "mitsuba"):
+        assert render(pool, native, tmp_path, scene, samples=16).tessellation is None
