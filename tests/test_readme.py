@@ -9,7 +9,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+import lightproof
+from lightproof import films
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -26,11 +30,13 @@ def commands(program: str) -> list[str]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A folder like the checkout, so that nothing is written into the checkout itself."""
+    """A folder like the checkout, so that nothing is written into the checkout itself, and a picture rendered by hand."""
     folder = tmp_path_factory.mktemp("readme")
     for name in ("scenes", "references"):
         shutil.copytree(ROOT / name, folder / name)
     (folder / "reports").mkdir()
+    exact = lightproof.reference("square-light").value.reshape(lightproof.load("square-light").film.grid)
+    films.write(folder / "square-light.exr", exact.shape, {"Y": exact[::-1] / np.pi}, {})
     return folder
 
 

@@ -26,6 +26,7 @@ from lightproof.trial import Result
 from lightproof.verdict import Outcome, Verdict
 
 GRADES = Path("reports/grades")
+REPLICATES = 16
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -99,6 +100,8 @@ def _doubts(verdict: Verdict, results: Sequence[Result], scene: Scene, judge: Ju
     """What is likely wrong with pictures that are too few to fail, or with how they were read; `unsaid`: nobody says what
     quantity they hold."""
     yield results[0].caveat
+    if verdict.outcome is Outcome.UNDECIDED and 1 < len(results) < REPLICATES:
+        yield f"The fewer pictures, the wider the intervals: {len(results)} are few, {REPLICATES} are what the rule is made for"
     reference = judge.reference(results)
     if verdict.outcome is Outcome.UNDECIDED and reference is not None:
         film = np.mean([result.film for result in results], axis=0)
