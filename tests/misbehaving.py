@@ -69,7 +69,7 @@ class Misbehaving(Method):
         noise = np.random.default_rng(0 if self.fault == "ignores-seed" else seed).normal(size=self.scene.size)
         film = light(self.scene) * (1 + noise / np.sqrt(samples))
         film = FAULTS.get(self.fault, lambda method, film: film)(self, film)
-        return Rendering(film=film, samples=samples)
+        return Rendering(film=film, samples=-samples if self.fault == "counts-backwards" else samples)
 
 
 def _raises(method: Misbehaving, film: np.ndarray) -> None:

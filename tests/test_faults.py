@@ -38,6 +38,7 @@ FAULTS = {
     "infinite": f"1 of 192 values of Y are no light, the first inf in element 4; {NO_LIGHT}",
     "negative": f"1 of 192 values of Y are no light, the first -1 in element 5; {NO_LIGHT}",
     "misshapen": "the film's Y has shape (191,); it must be (192,), row by row",
+    "counts-backwards": "the film has -64 samples; it must be those spent per element, 1 or more",
     "two-dimensional": "the film's Y has shape (12, 16); it must be (192,), row by row",
 }
 TIME_OUTS = {

@@ -144,6 +144,17 @@ def test_what_a_function_says_of_its_noise_is_kept():
     assert rendering.samples == 65
 
 
+def test_names_that_a_terminal_would_obey_are_shown_as_text(tmp_path, capsys):
+    """A file whose name and whose version clear the screen and paint it red: shown, and recorded, without the escapes."""
+    hostile = tmp_path / "\x1b[2Jmine.py"
+    hostile.write_text('__version__ = "\\x1b[31m[red]1.0"\ndef render(scene, samples, seed): ...\n')
+    assert main(["run", "point-light", "--with", f"{hostile}:render", "--out", str(tmp_path / "runs"), "--threads", "1"]) == 3
+    assert main(["doctor", f"{hostile}:render"]) == 3
+    printed = capsys.readouterr()
+    assert "\x1b" not in printed.out + printed.err
+    assert store.latest(tmp_path / "runs").run.versions["[2Jmine:render"] == "[31m[red]1.0"
+
+
 def test_two_files_of_one_name_are_told_apart(tmp_path, capsys):
     """a/mine.py and b/mine.py: refused, rather than one of them run alone."""
     for folder in ("a", "b"):

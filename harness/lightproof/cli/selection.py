@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from lightproof import scene, suite
+from lightproof.checked import plain
 from lightproof.cli.status import UsageError, unknown
 from lightproof.renderers import manifest
 from lightproof.renderers.registry import METHODS, Entry
@@ -48,7 +49,7 @@ def _own(where: str, name: str, options: str | None) -> Entry:
     if where.endswith(".py") and not path.is_file():
         raise UsageError(f"{where}: there is no such file; give the path of a Python file, such as my_renderer.py:render")
     stem, where = (path.stem, str(path.resolve())) if where.endswith(".py") else (where, where)
-    return Entry(f"{stem}:{name}{options or ''}", f"{where}:{name}", worker=f"{where}:{name}")
+    return Entry(plain(f"{stem}:{name}{options or ''}"), f"{where}:{name}", worker=f"{where}:{name}")
 
 
 def _outside(path: Path) -> Entry:

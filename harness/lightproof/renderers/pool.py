@@ -89,7 +89,7 @@ class Pool:
         if "unavailable" in answer:
             under = f" (for {entry.python})" if entry.python else ""
             raise Unavailable(plain(answer["unavailable"]) + under)
-        return About(**answer)
+        return About(plain(answer.pop("version")), **answer)
 
     def render(self, entry: Entry, scene: Scene, trial: Trial, film: Path, timeout: float) -> Result:
         """The result of one trial, its film written to the path `film`. Never raises on a renderer's fault: a worker that
@@ -158,7 +158,8 @@ class Pool:
         answer = self._ask(entry, "prepare", self._patience, scene_id=scene.id, case=scene.case, table=scene.to_table())
         if "unsupported" in answer:
             raise Unsupported(plain(answer["unsupported"]))
-        self._prepared[entry.name] = Preparation(scene.name, scene.digest, **answer)
+        said = {name: plain(answer.pop(name)) for name in ("precision", "caveat")}
+        self._prepared[entry.name] = Preparation(scene.name, scene.digest, **answer, **said)
         return self._prepared[entry.name]
 
     def _ask(self, entry: Entry, op: str, timeout: float, **arguments: Any) -> dict[str, Any]:

@@ -77,9 +77,9 @@ class Host:
             return {"unavailable": str(missing)}
         self._methods[method] = opened
         return {
-            "version": opened.version(),
-            "deterministic": opened.deterministic,
-            "samples_lights": opened.samples_lights,
+            "version": str(opened.version()),
+            "deterministic": bool(opened.deterministic),
+            "samples_lights": bool(opened.samples_lights),
         }
 
     def prepare(self, method: str, scene_id: str, case: str, table: dict[str, Any]) -> dict[str, Any]:
@@ -93,8 +93,8 @@ class Host:
         named = opened.prepare(scene)
         seconds = phases(named, time.perf_counter() - start, rest="setup")
         self._scenes[method], self._tessellations[method] = asked, opened.tessellation(scene)
-        return {"seconds": seconds, "settings": dict(opened.settings()), "precision": opened.precision,
-                "caveat": opened.caveat(scene)}
+        return {"seconds": seconds, "settings": dict(opened.settings()), "precision": str(opened.precision),
+                "caveat": str(opened.caveat(scene))}
 
     def render(self, method: str, samples: int, seed: int, film: str) -> dict[str, Any]:
         """One film of the prepared scene, written to the path `film`, or why it is unsupported after all."""
@@ -120,6 +120,8 @@ def phases(named: Mapping[str, float], elapsed: float, rest: str) -> dict[str, f
 
 def channels(rendering: Rendering, size: int, tessellation: np.ndarray | None = None) -> dict[str, np.ndarray]:
     """The arrays of a rendering, (n,) each. Raises FilmError where one is misshapen."""
+    if not rendering.samples >= 1:
+        raise films.FilmError(f"the film has {rendering.samples!r:.40} samples; it must be those spent per element, 1 or more")
     given = {"Y": rendering.film, "variance": rendering.variance, "tessellation": tessellation}
     if np.any(rendering.quantization):
         given["quantization"] = np.broadcast_to(rendering.quantization, (size,))
