@@ -16,6 +16,7 @@ report: setup
 	$(BIN)/lightproof report
 
 nightly: setup
+	$(BIN)/lightproof calibrate --budget 600
 	$(BIN)/lightproof run --tags nightly --budget 7200 --cell-budget 180
 	$(BIN)/lightproof report
 

@@ -8,14 +8,14 @@ from collections.abc import Sequence
 
 from lightproof.baseline import BaselineError
 from lightproof.checked import SceneError
-from lightproof.cli import certify, doctor, export, gate, grade, listing, report, run
+from lightproof.cli import calibrate, certify, doctor, export, gate, grade, listing, report, run
 from lightproof.cli.status import INCOMPLETE, USAGE, UsageError
 from lightproof.films import FilmError
 from lightproof.store import StoreError
 
 COMMANDS = {
     "run": run, "report": report, "list": listing, "certify": certify, "doctor": doctor, "gate": gate, "export": export,
-    "grade": grade,
+    "grade": grade, "calibrate": calibrate,
 }
 
 

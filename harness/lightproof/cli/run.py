@@ -77,6 +77,11 @@ def run(options: argparse.Namespace) -> int:
     console = Console(emoji=False, highlight=False, soft_wrap=True)
     if options.resume:
         return _resume(options, console)
+    return new(options, console)[1]
+
+
+def new(options: argparse.Namespace, console: Console) -> tuple[Store, int]:
+    """A new run, carried out: its record and the exit status. Raises UsageError, SceneError, StoreError."""
     home = Suite(options.suite) if options.suite else suite.default()
     scenes = selection.scenes(options.scenes, options.tags, home)
     methods = selection.methods(options.methods, options.tags)
@@ -85,7 +90,7 @@ def run(options: argparse.Namespace) -> int:
         header = plan.describe(scenes, methods, options.threads, options.seed, _open(methods, pool, console),
                                **{name: getattr(options, name) for name in ("budget", "cell_budget", "replicates", "tags")})
         record = store.create(options.out, header, list(scenes))
-        return _carry_out(record, pool, console, options.strict)
+        return record, _carry_out(record, pool, console, options.strict)
 
 
 def _resume(options: argparse.Namespace, console: Console) -> int:

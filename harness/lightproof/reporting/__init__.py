@@ -13,10 +13,11 @@ from lightproof.suite import Suite
 def write(run_folder: Path, suite: Suite) -> Path:
     """Judge a run anew and write results.csv, summary.csv and index.html into its folder; returns the page's path.
 
-    Raises StoreError and FilmError where the folder is no run or its record is broken, OSError where it cannot be written.
+    Raises StoreError, FilmError and UnitsError where the folder is no run, or a record is broken, OSError where it cannot be
+    written.
     """
     # Here and not above: pandas and altair take a second to import, which the process that renders a picture need not wait for.
-    from lightproof.reporting import citations, page, tables
+    from lightproof.reporting import citations, page, tables, units
     from lightproof.reporting.evaluation import evaluate
     from lightproof.reporting.pictures import picture
 
@@ -24,7 +25,8 @@ def write(run_folder: Path, suite: Suite) -> Path:
     tables.results(evaluation).to_csv(run_folder / "results.csv", index=False)
     tables.summary(evaluation).to_csv(run_folder / "summary.csv", index=False)
     bibliography = citations.read(suite.root / "references" / "references.bib")
-    html = page.render(evaluation, bibliography, functools.partial(picture, cache_folder=_picture_cache()))
+    factors = [*units.read(units.FILE), *units.measure(evaluation)]
+    html = page.render(evaluation, bibliography, functools.partial(picture, cache_folder=_picture_cache()), factors)
     path = run_folder / "index.html"
     path.write_text(html, encoding="utf-8")
     return path

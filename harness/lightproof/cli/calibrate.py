@@ -1,0 +1,45 @@
+"""measure each renderer's units: the power of a light of each kind in a black box, kept for every version"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+
+from lightproof import suite
+from lightproof.cli import run as runs
+from lightproof.cli.status import UsageError
+from lightproof.judging import homes
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Which methods, and where the factors go."""
+    add = parser.add_argument
+    add("methods", nargs="*", metavar="METHOD", help="as for run --with (default: each renderer's best configuration)")
+    add("--budget", type=runs.seconds, default=120.0, metavar="S", help="of the run that measures (default: %(default)g s)")
+    add("--out", type=Path, default=runs.RUNS, metavar="DIR", help="where that run's folder is made (default: %(default)s)")
+    add("--file", type=Path, metavar="FILE", help="where the factors are kept (default: reports/calibration.csv)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Render every wall of the boxes, keep the factors, and say each."""
+    from lightproof.reporting import units  # pandas takes a second that the other commands need not wait
+    from lightproof.reporting.evaluation import evaluate
+
+    console, file = Console(emoji=False, highlight=False, soft_wrap=True), options.file or units.FILE
+    boxes = [scene.name for scene in suite.default().cases(units.SCENE).values()]
+    planned = {**vars(runs.defaults()), **vars(options), "scenes": boxes}
+    record, status = runs.new(argparse.Namespace(**planned), console)
+    factors = units.measure(evaluate(record, homes(record)))
+    try:
+        known = units.read(file)
+        units.keep(file, factors)
+    except (OSError, units.UnitsError) as error:
+        raise UsageError(str(error)) from None
+    for factor in factors:
+        console.print(f"{escape(factor.method)} {escape(factor.version)}: {factor.light} light {units.shown(factor)}")
+    for alarm in units.alarms(known, factors):
+        console.print(f"[red]alarm[/] {escape(alarm.now.method)}: {escape(alarm.message)}")
+    return status
