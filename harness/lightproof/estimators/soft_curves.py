@@ -70,7 +70,7 @@ def shadow_box(sheet: Sheet, upper: np.ndarray, lower: np.ndarray) -> np.ndarray
     up, low = sheet.height(upper)[..., :, None], sheet.height(lower)[..., None, :]
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (up / (up - low))[..., None]
-    places = sheet.places(upper)[..., :, None, :] * (1 - share) + sheet.places(lower)[..., None, :, :] * share
+        places = sheet.places(upper)[..., :, None, :] * (1 - share) + sheet.places(lower)[..., None, :, :] * share
     bounded = (up > low).all(axis=(-1, -2))[..., None]
     lowest, highest = places.min(axis=(-3, -2)) - MARGIN, places.max(axis=(-3, -2)) + MARGIN
     box = np.stack([lowest[..., 0], highest[..., 0], lowest[..., 1], highest[..., 1]], axis=-1)
