@@ -112,8 +112,9 @@ class Examination:
 
     def same_seed(self, scene: Scene) -> Check:
         """The same seed again, after another one."""
-        first, self.results = self.render(scene, FEW), {}
+        first = self.render(scene, FEW)
         self.render(scene, FEW, replicate=1)
+        self.results.pop(first.trial)
         again = self.render(scene, FEW)
         if again.film is None:
             return Check("same seed", False, again.message)
