@@ -22,7 +22,8 @@ TRIAL_SCENES = ("square-light", "point-light", "sphere-furnace")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Which methods."""
     parser.add_argument("methods", nargs="*", metavar="METHOD",
-                        help="name, glob, module:name, file.py:name, or the manifest of a renderer of your own (default: the best configuration of each)")
+                        help="name, glob, module:name, file.py:name, or the manifest of a renderer of your own"
+                             " (default: each renderer in its best configuration)")
 
 
 def run(options: argparse.Namespace) -> int:
