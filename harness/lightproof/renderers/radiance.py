@@ -52,8 +52,6 @@ class Radiance(Method):
     def unsupported(self, scene: Scene) -> str | None:
         if scene.film.quantity == "solid_angle":
             return "Radiance gives no solid angles"
-        if any(isinstance(light, SunDisc) for light in scene.lights):
-            return "Radiance samples a distant disc unevenly"
         return transport.unsupported(scene) or radiance_transport.unsupported(scene)
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
@@ -85,7 +83,8 @@ class Radiance(Method):
 def strata(scene: Scene) -> int:
     """Parts of each lamp, or of the hemisphere, that are sampled from one point. One where paths go on from there; and where
     each element counts by itself, because Radiance leaves out a part that it sees at a cosine below 1e-4 times their number."""
-    planned, lamps = radiance_transport.transport_of(scene), radiance_transport.lamps(scene)
+    planned = radiance_transport.transport_of(scene)
+    lamps = radiance_transport.lamps(scene) + [light for light in scene.lights if isinstance(light, SunDisc)]
     if planned.bounces:
         aimed = planned.aims and (lamps or any(isinstance(light, PointLight | DirectionalLight) for light in scene.lights))
         return STRATA if planned.bounces == 1 and not aimed else 1

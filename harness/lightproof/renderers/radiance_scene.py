@@ -15,13 +15,26 @@ import numpy as np
 
 from lightproof import geometry
 from lightproof.geometry import Cap, Cylinder, Disk, Polygon, Shape, Sphere
-from lightproof.renderers import mesh
-from lightproof.renderers.radiance_transport import ROOM, Transport, extent, is_lamp, is_parallelogram, transport_of
-from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, OvercastSky, PointLight, Scene, Surface
+from lightproof.renderers import radiance_apertures
+from lightproof.renderers.radiance_transport import Transport, is_lamp, is_parallelogram, transport_of
+from lightproof.scene import (
+    AreaLight,
+    CameraFilm,
+    DirectionalLight,
+    Environment,
+    Light,
+    OvercastSky,
+    PointLight,
+    Scene,
+    SunDisc,
+    Surface,
+)
 
 BEAM = 0.01  # degrees across of the distant disc that stands for a beam
 BULB = 1e-5  # radius of the ball that stands for a point, of the scene's extent
-BEHIND = 1e-5  # of a flat lamp's size: how far its body lies behind its aperture
+FAR = 100  # of the scene's extent: half the width of a sun's aperture, so far away that the sun all but fills it
+APART = 1e-5  # of their size: how far things lie apart that share a place; but no less than Radiance tells apart
+LEAST = 4e-6  # m
 
 SHAPES = """{ Which rays meet a shape.  w: from A1..A3 to the point of the aperture where the ray arrives. }
 wx = Px - A1;  wy = Py - A2;  wz = Pz - A3;
@@ -38,9 +51,22 @@ gap = sq(qb) - (1 - sq(da))*(ww - sq(wa) - sq(A8));
 way = (-qb - Sqrt(gap)) / (1 - sq(da));
 level = wa + way*da;
 on_tube = if(gap, if(way, if(level, if(A7 - level, 1, 0), 0), 0), 0);
-{ left: of the edge through A1..A3 with inward normal A4..A6.  cap: A1..A3 centre, A4..A6 unit axis, A7 radius x cosine }
-left = if(wa, 1, 0);
+{ triangle: A1..A4, A5..A8, A9..A12 the half-space on the inner side of each edge }
+on_triangle = if(A1*Px + A2*Py + A3*Pz - A4, if(A5*Px + A6*Py + A7*Pz - A8, if(A9*Px + A10*Py + A11*Pz - A12, 1, 0), 0), 0);
+{ polygon: A1..A3 and A4..A6 axes in its plane, A7 number of edges, then its corners along these axes, the first one again
+  at the end; a point is inside where a line to one side crosses an odd number of edges }
+pu = Px*A1 + Py*A2 + Pz*A3;
+pv = Px*A4 + Py*A5 + Pz*A6;
+cu(i) = arg(6 + 2*i);
+cv(i) = arg(7 + 2*i);
+rise(i) = (pv - cv(i)) * (cu(i+1) - cu(i)) / (cv(i+1) - cv(i));
+cross(i) = if((pv - cv(i)) * (cv(i+1) - pv), if(cu(i) + rise(i) - pu, -1, 1), 1);
+crosses(n) = if(n - 0.5, cross(n) * crosses(n - 1), 1);
+on_polygon = (1 - crosses(A7)) / 2;
+{ cap: A1..A3 centre, A4..A6 unit axis, A7 radius times cosine of the half angle }
 on_cap = if(wa - A7, 1, 0);
+{ sun: A1..A3 unit direction to it, A4 cosine of its half angle }
+on_sun = if(Dx*A1 + Dy*A2 + Dz*A3 - A4, 1, 0);
 { front of a surface; the sky of the CIE }
 front = if(Rdot, 1, 0);
 overcast = (1 + 2*Dz) / 3;
@@ -49,7 +75,7 @@ overcast = (1 + 2*Dz) / 3;
 
 def describe(scene: Scene, shapes: str) -> str:
     """The scene's text; `shapes` names the file that holds SHAPES."""
-    writer = Writer(scene, transport_of(scene), extent(scene), shapes)
+    writer = Writer(scene, transport_of(scene), *radiance_apertures.whole(scene), shapes)
     parts = [part for light in scene.lights for part in writer.light(light)]
     parts += [part for surface in scene.surfaces for part in writer.surface(surface)]
     return "\n".join(parts) + "\n"
@@ -61,6 +87,7 @@ class Writer:
 
     scene: Scene
     transport: Transport
+    centre: np.ndarray
     extent: float
     shapes: str
 
@@ -71,8 +98,9 @@ class Writer:
             case AreaLight():
                 yield from self._lamp(name, light.shape, light.radiance)
             case PointLight():
-                radius = BULB * self.extent
-                yield _material("void", "illum", name, _grey(light.intensity / (np.pi * radius**2)), ["void"])
+                radius, seen = BULB * self.extent, isinstance(self.scene.film, CameraFilm)
+                kind, words = ("illum", ["void"]) if seen else ("light", [])
+                yield _material("void", kind, name, _grey(light.intensity / (np.pi * radius**2)), words)
                 yield _primitive(name, "sphere", f"{name}-bulb", [*light.position, radius])
             case DirectionalLight():
                 solid_angle = 4 * np.pi * np.sin(np.radians(BEAM) / 4) ** 2
@@ -81,6 +109,8 @@ class Writer:
             case Environment():
                 yield _material("void", "glow", name, [*_grey(light.radiance), 0])
                 yield _primitive(name, "source", f"{name}-dome", [0, 0, 1, 360 if light.extent == "sphere" else 180])
+            case SunDisc():
+                yield from self._sun(light)
             case OvercastSky():
                 yield self._pattern(f"{name}-cie", "overcast")
                 yield _material(f"{name}-cie", "glow", name, [*_grey(light.zenith_radiance), 0])
@@ -104,56 +134,56 @@ class Writer:
         yield f"void mixfunc {name}-mix\n4 {name}-glow {name}-paint {part:.17g} .\n0\n0"
         yield from self._body(f"{name}-mix", name, surface.shape, inside)
 
+    def _sun(self, sun: SunDisc) -> Iterator[str]:
+        """A disc to be seen, and an aperture far away that shines in the directions of the disc."""
+        toward, spread = geometry.unit(np.negative(sun.direction)), np.tan(np.radians(sun.half_angle))
+        yield _material("void", "glow", f"{sun.id}-glow", [*_grey(sun.radiance), -1])
+        yield _primitive(f"{sun.id}-glow", "source", f"{sun.id}-disc", [*toward, 2 * sun.half_angle])
+        yield self._pattern(f"{sun.id}-shape", "on_sun", [*toward, np.cos(np.radians(sun.half_angle))])
+        yield _material(f"{sun.id}-shape", "illum", sun.id, _grey(sun.radiance), ["void"])
+        sides = (FAR + 1) * self.extent * np.stack(geometry.tangents(sun.direction))
+        face = FAR / spread * self.extent * toward + np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ sides
+        yield _polygon(sun.id, f"{sun.id}-face", self.centre + face)
+
     def _lamp(self, name: str, shape: Shape, radiance: float) -> Iterator[str]:
         if is_parallelogram(shape) and self.transport.aims:
             yield _material("void", "light", name, _grey(radiance))
             yield from self._body(name, f"{name}-face", shape)
-        elif self.transport.apertures:
+        elif self.transport.aperture:
             yield _material("void", "glow", f"{name}-glow", [*_grey(radiance), -1])
-            yield from self._body(f"{name}-glow", f"{name}-body", shape, behind=BEHIND)
-            for number, (patterns, faces) in enumerate(self._apertures(f"{name}-shape", shape)):
-                yield from patterns
-                yield _material(patterns[-1].split()[2], "illum", f"{name}-{number}", _grey(radiance), ["void"])
-                yield from (_polygon(f"{name}-{number}", f"{name}-{number}-{i}", face) for i, face in enumerate(faces))
+            yield from self._body(f"{name}-glow", f"{name}-body", shape, behind=1)
+            function, numbers, faces = self._aperture(shape)
+            yield self._pattern(f"{name}-shape", function, numbers)
+            yield _material(f"{name}-shape", "illum", name, _grey(radiance), ["void"])
+            yield from (_polygon(name, f"{name}-{number}", face) for number, face in enumerate(faces))
         else:
             yield _material("void", "glow", name, [*_grey(radiance), 0])
             yield from self._body(name, f"{name}-body", shape)
 
-    def _apertures(self, name: str, shape: Shape) -> Iterator[tuple[list[str], list[np.ndarray]]]:
-        """Patterns, the last of which says where an aperture shines, and the aperture's faces (4, 3)."""
+    def _aperture(self, shape: Shape) -> tuple[str, list[float], list[np.ndarray]]:
+        """The function of SHAPES that says where an aperture shines, its numbers, and the aperture's faces (4, 3)."""
         match shape:
+            case Polygon() if len(shape.vertices) == 3:
+                return "on_triangle", radiance_apertures.sides(shape), [radiance_apertures.frame(shape)]
+            case Polygon():
+                return "on_polygon", radiance_apertures.outline(shape), [radiance_apertures.frame(shape)]
             case Disk():
-                axes = np.stack([*geometry.tangents(shape.normal), geometry.unit(shape.normal)])
-                corners = np.array(shape.center) + shape.radius * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ axes[:2]
-                yield [self._pattern(name, "on_disk", [*shape.center, shape.radius])], [corners]
+                sides = shape.radius * np.stack(geometry.tangents(shape.normal))
+                face = np.array(shape.center) + np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ sides
+                return "on_disk", [*shape.center, shape.radius], [face]
             case Sphere():
-                size = (1 + ROOM) * shape.radius
-                yield [self._pattern(name, "on_sphere", [*shape.center, shape.radius])], box(shape.center, size * np.eye(3))
+                return "on_sphere", [*shape.center, shape.radius], radiance_apertures.box(shape)
             case Cylinder():
-                axis = geometry.unit(shape.axis)
-                halves = np.diag([shape.radius, shape.radius, shape.height / 2]) @ np.stack([*geometry.tangents(axis), axis])
-                patterns = [self._pattern(name, "on_tube", [*shape.base, *axis, shape.height, shape.radius])]
-                yield patterns, box(np.add(shape.base, halves[2]), (1 + ROOM) * halves)
-            case Polygon():
-                for number, corners in enumerate(convex_parts(np.array(shape.vertices))):
-                    yield self._edges(f"{name}-{number}", corners, shape.normal), [frame(corners, shape.normal)]
+                numbers = [*shape.base, *geometry.unit(shape.axis), shape.height, shape.radius]
+                return "on_tube", numbers, radiance_apertures.box(shape)
 
-    def _edges(self, name: str, corners: np.ndarray, normal: np.ndarray) -> list[str]:
-        """Patterns one on the other, a half-plane each, whose product is a convex polygon."""
-        patterns, before = [], "void"
-        for number, (a, b) in enumerate(zip(corners, np.roll(corners, -1, axis=0), strict=True)):
-            patterns.append(self._pattern(f"{name}-{number}", "left", [*a, *geometry.unit(np.cross(normal, b - a))], before))
-            before = f"{name}-{number}"
-        return patterns
-
-    def _body(self, material: str, name: str, shape: Shape, inside: bool = False, behind: float = 0.0) -> Iterator[str]:
-        """The shape itself; a flat one may be moved back by the part `behind` of its size."""
+    def _body(self, material: str, name: str, shape: Shape, inside: bool = False, behind: int = 0) -> Iterator[str]:
+        """The shape itself; a flat one may be moved back by gaps."""
         match shape:
             case Polygon():
-                corners = np.array(shape.vertices)
-                yield _polygon(material, name, corners - behind * np.ptp(corners, axis=0).max() * shape.normal)
+                yield _polygon(material, name, np.array(shape.vertices) - behind * _gap(shape) * shape.normal)
             case Disk():
-                centre = np.array(shape.center) - behind * shape.radius * geometry.unit(shape.normal)
+                centre = np.array(shape.center) - behind * _gap(shape) * geometry.unit(shape.normal)
                 yield _primitive(material, "ring", name, [*centre, *shape.normal, 0, shape.radius])
             case Sphere():
                 yield _primitive(material, "bubble" if inside else "sphere", name, [*shape.center, shape.radius])
@@ -163,35 +193,22 @@ class Writer:
             case Cap():
                 numbers = [*shape.center, *geometry.unit(shape.axis), shape.radius * np.cos(np.radians(shape.half_angle))]
                 yield f"void mixfunc {name}-cap\n4 {material} void on_cap {self.shapes}\n0\n{_numbers(numbers)}"
-                yield _primitive(f"{name}-cap", "bubble" if inside else "sphere", name, [*shape.center, shape.radius])
+                radius = shape.radius + self._before(shape) * _gap(shape)
+                yield _primitive(f"{name}-cap", "bubble" if inside else "sphere", name, [*shape.center, radius])
 
-    def _pattern(self, name: str, function: str, numbers: Any = (), modifier: str = "void") -> str:
-        return f"{modifier} brightfunc {name}\n2 {function} {self.shapes}\n0\n{_numbers(numbers)}"
+    def _before(self, cap: Cap) -> int:
+        """How many caps of the same sphere come before this one: of two spheres in one place a ray meets but one."""
+        shapes = [getattr(item, "shape", None) for item in (*self.scene.lights, *self.scene.surfaces)]
+        before = shapes[: next(place for place, shape in enumerate(shapes) if shape is cap)]
+        return sum(isinstance(shape, Cap) and (shape.center, shape.radius) == (cap.center, cap.radius) for shape in before)
 
-
-def box(centre: Any, halves: np.ndarray) -> list[np.ndarray]:
-    """The six outward faces (4, 3) of a box; `halves` (3, 3) are its half axes, right-handed."""
-    around = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-    return [np.array(centre) + s * halves[i] + np.array([[-1, -s], [1, -s], [1, s], [-1, s]]) @ halves[[j, k]]
-            for i, j, k in around for s in (1, -1)]
-
-
-def frame(corners: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """The smallest rectangle (4, 3) around a convex polygon that has a side along one of its edges; it faces along `normal`."""
-    def along(edge: np.ndarray) -> tuple[float, np.ndarray]:
-        axes = np.stack([geometry.unit(edge), np.cross(normal, geometry.unit(edge))])
-        flat = (corners - corners[0]) @ axes.T
-        (a, b), (c, d) = flat.min(axis=0), flat.max(axis=0)
-        return (c - a) * (d - b), corners[0] + np.array([[a, b], [c, b], [c, d], [a, d]]) @ axes
-
-    return min((along(edge) for edge in np.roll(corners, -1, axis=0) - corners), key=lambda found: found[0])[1]
+    def _pattern(self, name: str, function: str, numbers: Any = ()) -> str:
+        return f"void brightfunc {name}\n2 {function} {self.shapes}\n0\n{_numbers(numbers)}"
 
 
-def convex_parts(corners: np.ndarray) -> list[np.ndarray]:
-    """A polygon (n, 3) itself where it is convex, else its triangles."""
-    edges = np.roll(corners, -1, axis=0) - corners
-    turns = np.cross(edges, np.roll(edges, -1, axis=0)) @ geometry.vector_area(corners)
-    return [corners] if (turns >= 0).all() else list(corners[mesh.tessellate(Polygon(tuple(map(tuple, corners)))).triangles])
+def _gap(shape: Polygon | Disk | Cap) -> float:
+    size = np.ptp(shape.vertices, axis=0).max() if isinstance(shape, Polygon) else shape.radius
+    return max(APART * float(size), LEAST)
 
 
 def _polygon(material: str, name: str, corners: np.ndarray) -> str:
