@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 import subprocess
@@ -150,8 +151,9 @@ def _program_of(harness: int) -> psutil.Process:
     """The renderer that a harness has started, once it is there."""
     while True:
         for process in psutil.Process(harness).children(recursive=True):
-            if process.cmdline()[-2:] == ["lasting", "hangs"]:
-                return process
+            with contextlib.suppress(psutil.Error):
+                if process.cmdline()[-2:] == ["lasting", "hangs"]:
+                    return process
         time.sleep(0.1)
 
 

@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("scenes", nargs="*", metavar="SCENE", help="id, id:case or path of a .toml file (default: all that are quick)")
     add("--with", dest="methods", nargs="+", action="extend", default=[], metavar="METHOD",
-        help="name, glob, module:Class or file.py:Class (default: each renderer's best configuration)")
+        help="name, glob, module:name, file.py:name or manifest.toml (default: each renderer's best configuration)")
     add("--tags", nargs="+", action="extend", default=[], metavar="TAG",
         help="scenes with one of these; nightly: every case of every scene, every configuration")
     add("--budget", type=seconds, default=250.0, metavar="S", help="of the whole run (default: %(default)g s)")
