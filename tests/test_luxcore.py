@@ -121,7 +121,8 @@ def test_a_missing_package_says_what_to_do(monkeypatch: pytest.MonkeyPatch):
         LuxCore("luxcore", 1).open()
 
 
-HALF_SKY = described([{"kind": "environment", "radiance": 1.37, "extent": "upper"}], (), GRID | {"v": [0, 0.96, 0.72], "resolution": [16, 12]}, 0)
+SLOPE = GRID | {"v": [0, 0.96, 0.72], "resolution": [16, 12]}
+HALF_SKY = described([{"kind": "environment", "radiance": 1.37, "extent": "upper"}], (), SLOPE, 0)
 
 
 @pytest.mark.parametrize("each", [SUITE.scene("occluded-square"), SUITE.scene("square-light-seen"), scene(HALF_SKY, "half-sky")])
