@@ -52,7 +52,7 @@ way = (-qb - Sqrt(gap)) / (1 - sq(da));
 level = wa + way*da;
 on_tube = if(gap, if(way, if(level, if(A7 - level, 1, 0), 0), 0), 0);
 { triangle: A1..A4, A5..A8, A9..A12 the half-space on the inner side of each edge }
-on_triangle = if(A1*Px + A2*Py + A3*Pz - A4, if(A5*Px + A6*Py + A7*Pz - A8, if(A9*Px + A10*Py + A11*Pz - A12, 1, 0), 0), 0);
+on_triangle = if(A1*Px + A2*Py + A3*Pz - A4, if(A5*Px + A6*Py + A7*Pz - A8, if(A9*Px + A10*Py + arg(11)*Pz - arg(12), 1, 0), 0), 0);
 { polygon: A1..A3 and A4..A6 axes in its plane, A7 number of edges, then its corners along these axes, the first one again
   at the end; a point is inside where a line to one side crosses an odd number of edges }
 pu = Px*A1 + Py*A2 + Pz*A3;
