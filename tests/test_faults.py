@@ -9,6 +9,7 @@ import psutil
 import pytest
 from test_process import FILE_LIMIT, SCENE, entry, light, trial
 
+from lightproof.renderers import manifest
 from lightproof.renderers.pool import Pool
 from lightproof.trial import Result, Status
 
@@ -47,6 +48,18 @@ TIME_OUTS = {
     "ignores-sigterm": "while rendering: no answer within 0.3 s; it last wrote: thinking about it",
     "stops": "while rendering: no answer within 0.3 s; it last wrote: the end is near",
 }
+OUTSIDE = {  # beside the faults of tests/test_protocol.py
+    "exits-at-once": ("lasting", "it exited with status 1 before it answered; it last wrote: no licence"),
+    "is-killed": ("once", "it was killed by SIGKILL (out of memory?) before it answered; it last wrote: more memory"),
+    "fills-the-disk": ("once", "it exited with status 1 before it answered; it last wrote: "),
+    "infinite": ("lasting", f"1 of 192 values of Y are no light, the first inf in element 0; {NO_LIGHT}"),
+    "too-short": ("lasting", "its film has 191 values; this film has 12 rows of 16"),
+    "of-another-scene": ("lasting", "its answer is of another scene: its digest is '000"),
+    "of-another-job": ("once", "it answered job 'another' and not "),
+    "hangs-before": ("lasting", "no answer within 0.7 s; it wrote nothing"),
+    "hangs-after": ("once", "no answer within 0.7 s; it wrote nothing"),
+    "answers-late": ("lasting", "no answer within 0.7 s; it wrote nothing"),
+}
 HARMLESS = ("answers-late", "answers-twice", "leaves-a-child", "starts-slowly", "slow")
 
 
@@ -61,6 +74,16 @@ def render(pool: Pool, folder: Path, fault: str = "", replicate: int = 0, timeou
     """One trial of the renderer with a fault, without one of the honest renderer, both in the same process."""
     method = entry(fault, worker="shared")
     return pool.render(method, SCENE, trial(method, replicate), folder / f"{fault}-{replicate}.exr", timeout)
+
+
+def render_outside(pool: Pool, folder: Path, fault: str, mode: str, timeout: float = 20.0) -> Result:
+    """One trial of tests/outside_faults.py in a process of its own."""
+    path = folder / f"{fault}.toml"
+    script = Path(__file__).with_name("outside_faults.py")
+    path.write_text(f"""name = "{fault}"\nmode = "{mode}"
+command = ["python3", "{script}", "{mode}", "{fault}"]\nversion = ["python3", "{script}", "--version"]\n""")
+    method = manifest.read(path).entry(path)
+    return pool.render(method, SCENE, trial(method), folder / f"{fault}.exr", timeout)
 
 
 def is_right(result: Result) -> bool:
@@ -89,6 +112,22 @@ def test_a_renderer_that_hangs_is_killed(pool, tmp_path, fault):
     assert (faulty.status, faulty.message) == (Status.ERROR, TIME_OUTS[fault])
     assert not process.is_running()
     assert is_right(render(pool, tmp_path, replicate=1))
+
+
+@pytest.mark.parametrize("fault", OUTSIDE)
+def test_a_fault_outside_costs_its_own_trial(pool, tmp_path, fault):
+    """The same of programs, whose faults their workers live through; who hangs is killed with its worker."""
+    mode, message = OUTSIDE[fault]
+    faulty = render_outside(pool, tmp_path, fault, mode, timeout=0.7 if "no answer" in message else 20.0)
+    assert (faulty.status, faulty.film) == (Status.ERROR, None)
+    assert message in faulty.message
+    assert faulty.message.isprintable()
+    assert is_right(render(pool, tmp_path))
+
+
+def test_a_program_that_starts_slowly_is_waited_for(pool, tmp_path):
+    """A second before it reads its first job: a film like any other."""
+    assert render_outside(pool, tmp_path, "starts-slowly", "lasting").status is Status.OK
 
 
 def test_a_renderer_that_never_starts_is_given_up(tmp_path):
