@@ -19,6 +19,7 @@ from lightproof.scene import Scene
 from lightproof.trial import Result, Status, Trial
 
 PATIENCE = 60.0
+PREPARING = 5  # times the patience: to compile may take a minute of a machine that has nothing else to do
 DOING = {"open": "starting the renderer", "prepare": "preparing the scene", "render": "rendering"}
 
 
@@ -52,7 +53,8 @@ class Preparation:
 
 
 class Pool:
-    """The workers of a run. `patience` [s] is what a renderer may take to start or to prepare a scene."""
+    """The workers of a run. `patience` [s] is what a renderer may take to start; to prepare a scene it may take `PREPARING`
+    times as long."""
 
     def __init__(self, threads: int, patience: float = PATIENCE, file_limit: int = LARGEST_FILE):
         self.threads = threads
@@ -155,7 +157,7 @@ class Pool:
         prepared = self._prepared.get(entry.name)
         if prepared and (prepared.scene, prepared.digest) == (scene.name, scene.digest):
             return prepared
-        answer = self._ask(entry, "prepare", self._patience, scene_id=scene.id, case=scene.case, table=scene.to_table())
+        answer = self._ask(entry, "prepare", PREPARING * self._patience, scene_id=scene.id, case=scene.case, table=scene.to_table())
         if "unsupported" in answer:
             raise Unsupported(plain(answer["unsupported"]))
         said = {name: plain(answer.pop(name)) for name in ("precision", "caveat")}
