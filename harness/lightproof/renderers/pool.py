@@ -157,7 +157,8 @@ class Pool:
         prepared = self._prepared.get(entry.name)
         if prepared and (prepared.scene, prepared.digest) == (scene.name, scene.digest):
             return prepared
-        answer = self._ask(entry, "prepare", PREPARING * self._patience, scene_id=scene.id, case=scene.case, table=scene.to_table())
+        told = {"scene_id": scene.id, "case": scene.case, "table": scene.to_table()}
+        answer = self._ask(entry, "prepare", PREPARING * self._patience, **told)
         if "unsupported" in answer:
             raise Unsupported(plain(answer["unsupported"]))
         said = {name: plain(answer.pop(name)) for name in ("precision", "caveat")}
