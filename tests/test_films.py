@@ -121,10 +121,20 @@ def test_a_part_that_is_cut_off_is_missed(tmp_path):
         films.read(tmp_path / "a.exr", "a.Y")
 
 
-def test_a_header_that_claims_too_much_is_not_followed(tmp_path):
+@pytest.mark.parametrize("name", ["dataWindow", "displayWindow"])
+def test_a_header_that_claims_too_much_is_not_followed(tmp_path, name):
     path = save(tmp_path / "a.exr", {"Y": RAMP})
-    data = path.read_bytes()
-    here = data.index(b"dataWindow\0box2i\0") + len(b"dataWindow\0box2i\0") + 4
+    data, label = path.read_bytes(), name.encode() + b"\0box2i\0"
+    here = data.index(label) + len(label) + 4
     path.write_bytes(data[:here] + np.array([0, 0, 99_999, 99_999], "<i4").tobytes() + data[here + 16:])
-    with pytest.raises(films.FilmError, match="claims 100000 x 100000 pixels"):
+    with pytest.raises(films.FilmError, match=rf"claims 100000 x 100000 pixels \({name}\)"):
+        films.read(path)
+
+
+def test_tiles_of_any_size_are_not_followed(tmp_path):
+    path = save(tmp_path / "a.exr", {"Y": RAMP}, type=OpenEXR.tiledimage, tiles=OpenEXR.TileDescription())
+    data, label = path.read_bytes(), b"tiles\0tiledesc\0"
+    here = data.index(label) + len(label) + 4
+    path.write_bytes(data[:here] + np.array([1 << 16, 1 << 16], "<u4").tobytes() + data[here + 8:])
+    with pytest.raises(films.FilmError, match=r"claims 65536 x 65536 pixels \(tiles\)"):
         films.read(path)

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-MOST = 1 << 28  # values in one file; a header that claims more is not followed
+PIXELS, VALUES = 1 << 25, 1 << 28  # in one file, twice the largest film's; a header that claims more is not followed
 LUMINANCE, COLOUR = ("Y",), ("R", "G", "B")
 WRITE_AGAIN = "it may be truncated; write it again"
 
@@ -93,13 +93,19 @@ def _display(path: Path, headers: list[dict[str, Any]]) -> Window:
     for header in headers:
         if "deep" in str(header.get("type")):
             raise FilmError(f"{path}: is a deep image; flatten it")
-        for window in ("dataWindow", "displayWindow"):
-            left, top, right, bottom = _window(header[window])
-            columns, rows = right - left + 1, bottom - top + 1
-            if columns * rows * len(header["channels"]) > MOST:
-                raise FilmError(f"{path}: claims {columns} x {rows} pixels in {len(header['channels'])} channels ({window}); at"
-                                f" most {MOST} values are read")
+        channels = len(header["channels"])
+        for name, (columns, rows) in _sizes(header).items():
+            if columns * rows > PIXELS or columns * rows * channels > VALUES:
+                raise FilmError(f"{path}: claims {columns} x {rows} pixels ({name}) in {channels} channels; at most {PIXELS} pixels"
+                                f" and {VALUES} values are read")
     return _window(headers[0]["displayWindow"])
+
+
+def _sizes(header: dict[str, Any]) -> dict[str, tuple[int, int]]:
+    """Columns and rows of what the header makes the library and us set aside memory for."""
+    windows = {name: _window(header[name]) for name in ("dataWindow", "displayWindow")}
+    sizes = {name: (right - left + 1, bottom - top + 1) for name, (left, top, right, bottom) in windows.items()}
+    return sizes | ({"tiles": (header["tiles"].xSize, header["tiles"].ySize)} if "tiles" in header else {})
 
 
 def _window(corners: Any) -> Window:

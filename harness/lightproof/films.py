@@ -60,7 +60,8 @@ def read(path: Path, channel: str = "") -> tuple[tuple[int, int], dict[str, np.n
 def _numbers(image: exr.Image, name: str) -> np.ndarray:
     if image.channels[name].dtype.kind != "f":
         raise FilmError(f"{image.path}: channel {name} holds whole numbers; light is half or float")
-    return image.channels[name].astype(float)
+    with np.errstate(invalid="ignore"):  # a signalling NaN is as good as any
+        return image.channels[name].astype(float)
 
 
 @cache
