@@ -96,8 +96,8 @@ def _display(path: Path, headers: list[dict[str, Any]]) -> Window:
         channels = len(header["channels"])
         for name, (columns, rows) in _sizes(header).items():
             if columns * rows > PIXELS or columns * rows * channels > VALUES:
-                raise FilmError(f"{path}: claims {columns} x {rows} pixels ({name}) in {channels} channels; at most {PIXELS} pixels"
-                                f" and {VALUES} values are read")
+                raise FilmError(f"{path}: claims {columns} x {rows} pixels ({name}) in {channels} channels; at most {PIXELS}"
+                                f" pixels and {VALUES} values are read")
     return _window(headers[0]["displayWindow"])
 
 
