@@ -93,7 +93,8 @@ class Cycles(Method):
         return "Blender's lamps are not seen from behind" if isinstance(scene.film, CameraFilm) else None
 
     def caveat(self, scene: Scene) -> str:
-        if self.configuration.emitters == LAMPS and not _lamps_fit(scene):
+        has_size = any(isinstance(light, AreaLight) for light in scene.lights)
+        if has_size and self.configuration.emitters == LAMPS and not _lamps_fit(scene):
             return "Cycles' lamps block no light: what would fall on the back of one passes through it."
         return ""
 
