@@ -61,23 +61,27 @@ class Image:
 
 def read(path: Path) -> Image:
     """The picture in a file. Raises FilmError where there is none, or none that is flat, whole and of bearable size."""
-    import OpenEXR
-
     if not path.is_file():
         raise FilmError(f"{path}: there is no such file; give the path of an OpenEXR image")
     try:
         with _quiet():
-            with OpenEXR.File(str(path), header_only=True) as file:
-                headers = [dict(part.header) for part in file.parts]
-            display = _display(path, headers)
-            with OpenEXR.File(str(path), separate_channels=True) as file:
-                parts = [(part.name(), part.header, dict(part.channels)) for part in file.parts]
-                channels = _channels(path, parts, display)
+            return _read(path)
     except FilmError:
         raise
     except Exception as error:  # the binding raises bare RuntimeError, or a TypeError of its own, on foreign bytes
         raise FilmError(f"{path}: is no OpenEXR image that can be read ({error}); {WRITE_AGAIN}") from None
-    if len(parts) != len(headers):
+
+
+def _read(path: Path) -> Image:
+    import OpenEXR
+
+    with OpenEXR.File(str(path), header_only=True) as file:
+        headers = [dict(part.header) for part in file.parts]
+    display = _display(path, headers)
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        parts = [(part.name(), part.header, dict(part.channels)) for part in file.parts]
+        channels = _channels(path, parts, display)
+    if len(parts) != len(headers):  # what cannot be decoded is left out
         raise FilmError(f"{path}: pixels of {len(headers) - len(parts)} of {len(headers)} parts are missing; {WRITE_AGAIN}")
     return Image(path, channels, {key: value for key, value in headers[0].items() if isinstance(value, str)})
 

@@ -28,8 +28,8 @@ ALONE = "A single picture is judged as it is, noise included"
 @dataclass(frozen=True)
 class Reading:
     """How pictures are read: `quantity` is what they hold where that is not the film's own, `factor` brings them to SI units,
-    `channel` names the channel or layer that holds the light, where it must be named; `samples` per pixel are those of the first
-    step, where that is known and no header says it."""
+    `channel` names the channel or layer that holds the light, where it must be named; `samples` per pixel are those of the
+    first step, where that is known and no header says it."""
 
     quantity: str = ""
     factor: float = 1.0
@@ -86,8 +86,8 @@ def _result(path: Path, scene: Scene, reading: Reading, multiple: int) -> Result
 def _check_header(path: Path, header: Mapping[str, str], scene: Scene, reading: Reading) -> None:
     """Raise FilmError where one of Lightproof's own films is of something else."""
     if header.get("digest", scene.digest) != scene.digest:
-        raise FilmError(f"{path}: its header says that it is of another scene, or another version of it: {header.get('scene')!a},"
-                        f" digest {header['digest'][:12]!a}; {scene.name} has {scene.digest[:12]}")
+        raise FilmError(f"{path}: its header says that it is of another scene, or another version of it:"
+                        f" {header.get('scene')!a}, digest {header['digest'][:12]!a}; {scene.name} has {scene.digest[:12]}")
     if "digest" in header and reading.quantity and header.get("quantity") != reading.quantity:
         raise FilmError(f"{path}: its header says that it holds {header.get('quantity')!a}, not {reading.quantity}")
 

@@ -21,8 +21,8 @@ from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, Po
 SAMPLES = 1024
 UNITS = ("Units: radiance 1:1, as long as the sensor is the default: cie1931, iso 100, a shutter of 1 s, no white balance. With"
          " another, give grade the factor: --scale.")
-TWO_SIDED = ("pbrt's diffuse surfaces reflect on both sides, and Lightproof's on the front only: where light reaches the back of"
-             " one that reflects, pbrt is right to differ.")
+TWO_SIDED = ("pbrt's diffuse surfaces reflect on both sides, and Lightproof's on the front only: where light reaches the back"
+             " of one that reflects, pbrt is right to differ.")
 
 
 def write(scene: Scene, path: Path) -> None:

@@ -61,7 +61,8 @@ def _settings(view: View, name: str) -> list[str]:
     film = {"rel camera": "</scene/film_camera>", "rel products": "</render/product>",
             "uniform int2 resolution": f"({columns}, {rows})", "uniform float pixelAspectRatio": f"{aspect:.9g}",
             "uniform token aspectRatioConformPolicy": '"adjustPixelAspectRatio"'}
-    return _prim("RenderSettings", "render", film, _prim("RenderProduct", "product", file, _prim("RenderVar", "colour", colour)))
+    product = _prim("RenderProduct", "product", file, _prim("RenderVar", "colour", colour))
+    return _prim("RenderSettings", "render", film, product)
 
 
 def _camera(view: View) -> list[str]:
@@ -157,7 +158,8 @@ def _material(name: str, reflectance: float) -> list[str]:
     grey, here = f"({reflectance:.9g}, {reflectance:.9g}, {reflectance:.9g})", f"/scene/{name}/material"
     preview = {"uniform token info:id": '"UsdPreviewSurface"', "color3f inputs:diffuseColor": grey, "float inputs:roughness": 1,
                "int inputs:useSpecularWorkflow": 1, "color3f inputs:specularColor": "(0, 0, 0)"}
-    diffuse = {"uniform token info:id": '"ND_oren_nayar_diffuse_bsdf"', "color3f inputs:color": grey, "float inputs:roughness": 0}
+    diffuse = {"uniform token info:id": '"ND_oren_nayar_diffuse_bsdf"', "color3f inputs:color": grey,
+               "float inputs:roughness": 0}
     lambert = {"uniform token info:id": '"ND_surface"', "token inputs:bsdf.connect": f"<{here}/diffuse.outputs:out>"}
     outputs = {"token outputs:surface.connect": f"<{here}/preview.outputs:surface>",
                "token outputs:mtlx:surface.connect": f"<{here}/lambert.outputs:out>"}
