@@ -9,7 +9,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready-$(EXTRAS)
 
-.PHONY: setup report nightly test gate bench clean
+.PHONY: setup report nightly test gate bench soak clean
 
 report: setup
 	$(BIN)/lightproof run $(RUN)
@@ -29,6 +29,9 @@ gate: setup
 
 bench: setup
 	$(BIN)/python benchmarks/throughput.py
+
+soak: setup
+	$(BIN)/python benchmarks/soak.py
 
 setup: $(READY)
 

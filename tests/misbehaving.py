@@ -116,6 +116,11 @@ def _floods(method: Misbehaving, film: np.ndarray) -> None:
             print("light " * 10_000, file=stream)
 
 
+def _chatters(method: Misbehaving, film: np.ndarray) -> np.ndarray:
+    print("light " * 100_000)
+    return film
+
+
 def _fills_the_disk(method: Misbehaving, film: np.ndarray) -> None:
     print("saving every path")
     with tempfile.TemporaryFile() as scratch:
@@ -226,6 +231,7 @@ FAULTS = {
     "slow": _is_slow,
     "ignores-sigterm": _hangs,
     "floods": _floods,
+    "chatters": _chatters,
     "fills-the-disk": _fills_the_disk,
     "closes-pipe": _closes_pipe,
     "speaks-nonsense": _speaks_nonsense,

@@ -1,4 +1,7 @@
-"""More that a renderer outside does wrong, with every job: `outside_faults.py MODE FAULT [JOB]`, or `--version`."""
+"""What a renderer outside does wrong, with every job: `outside_faults.py MODE FAULT [JOB]`, or `--version`.
+
+It knows more faults than outside_renderer.py, and those too.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ import signal
 import sys
 import time
 
+import outside_renderer
 from outside_renderer import rendered, say
 
 
@@ -26,8 +30,10 @@ def misbehave(fault: str, job: dict, answer: dict) -> None:
     elif fault == "hangs-after":
         say(answer)
         time.sleep(3600)
+    elif fault in ALTERED:
+        say(ALTERED[fault](answer))
     else:
-        say(ALTERED.get(fault, lambda answer: answer)(answer))
+        outside_renderer.misbehave(fault, job, answer)
 
 
 ALTERED = {

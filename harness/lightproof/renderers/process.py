@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import json
 import os
 import select
@@ -57,7 +58,8 @@ class Worker:
 
     def __init__(self, threads: int, file_limit: int = LARGEST_FILE, python: str = ""):
         self._mark = uuid.uuid4().hex
-        self._log = tempfile.TemporaryFile("ab+")  # noqa: SIM115 - lives as long as the worker
+        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the worker
+        fcntl.fcntl(self._log, fcntl.F_SETFL, os.O_APPEND)  # else the worker would write on where it was before it was emptied
         self._scratch = tempfile.TemporaryDirectory(prefix="lightproof-", ignore_cleanup_errors=True)
         self._buffer = b""
         self._asked = 0
