@@ -20,6 +20,7 @@ from test_store import RUN, recorded, trial
 from lightproof import baseline, films, plan, references, scene_file, store, suite
 from lightproof.baseline import BaselineError
 from lightproof.checked import SceneError
+from lightproof.cli import main
 from lightproof.films import FilmError
 from lightproof.judging import Judge
 from lightproof.references import ReferenceError
@@ -209,3 +210,36 @@ def fuzz(reader: Reader, examples: int) -> dict[str, int]:
 def test_any_input_is_accepted_or_refused(name):
     """Nothing but the documented errors, and these fit for a terminal; of what is nearly right, some is refused."""
     assert fuzz(READERS[name], EXAMPLES)["refused"] > 0
+
+
+@pytest.mark.parametrize("name", ["\x1b[2Jscene", "<script>alert(1)<script>", "..", "a\u202eb"])
+def test_a_suite_of_strangely_named_files_is_refused_in_plain_words(tmp_path, capsys, name):
+    """A scene file named to clear the screen, to run in a browser, or to lead out of its folder: told, and harmless to tell."""
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / f"scenes/{name}.toml").write_bytes(SCENES[0])
+    assert main(["list", "--suite", str(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    assert "is not an id; give lower-case words" in told
+    assert told.rstrip("\n").isprintable()
+
+
+@pytest.mark.parametrize("film", ["../../../etc/passwd", "/dev/zero", "films/../../secret.exr"])
+def test_no_record_leads_out_of_its_run(film):
+    """A line that names another file as its film: the film of its trial is read, where it has to stand."""
+    read_record(HEADER, {**LINE, "film": film})
+    with pytest.raises(StoreError, match="there is no scene"):
+        read_record(HEADER, {**LINE, "trial": {**LINE["trial"], "scene": ".."}})
+    with pytest.raises(StoreError, match="is not an id"):
+        read_record({**HEADER, "scenes": [{**HEADER["scenes"][0], "id": "../secret"}]}, LINE)
+
+
+@pytest.mark.parametrize(("reader", "data", "message"), [
+    ("scene file", b"#" * (scene_file.MAX_BYTES + 1), "larger than"),
+    ("manifest file", b"#" * (scene_file.MAX_BYTES + 1), "larger than"),
+    ("answer", b"[" * 100_000, "which is no JSON"),
+    ("answer", as_json({**ANSWER, "samples": 10**400}), "whole number"),
+])
+def test_what_is_too_large_or_too_deep_says_so(reader, data, message):
+    """A megabyte of comments, a hundred thousand brackets, a number of 400 digits."""
+    with pytest.raises(READERS[reader].errors, match=message):
+        READERS[reader].read(data)

@@ -85,10 +85,10 @@ def only(table: Any, known: Sequence[str], required: Iterable[str]) -> None:
             raise SceneError(key, "is missing; it must be given")
 
 
-def plain(text: str) -> str:
+def plain(text: str, longest: int = LONGEST_LINE) -> str:
     """What a stranger says, as one line of bearable length that no terminal obeys."""
     line = " ".join("".join(char if char.isprintable() else " " for char in text).split())
-    return line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]}..."
+    return line if len(line) <= longest else f"{line[:longest]}..."
 
 
 def shown(value: Any) -> str:

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from lightproof.baseline import BaselineError
-from lightproof.checked import SceneError
+from lightproof.checked import SceneError, plain
 from lightproof.cli import calibrate, certify, doctor, export, gate, grade, listing, report, run
 from lightproof.cli.status import INCOMPLETE, USAGE, UsageError
 from lightproof.films import FilmError
@@ -17,6 +17,8 @@ COMMANDS = {
     "run": run, "report": report, "list": listing, "certify": certify, "doctor": doctor, "gate": gate, "export": export,
     "grade": grade, "calibrate": calibrate,
 }
+
+LONGEST_COMPLAINT = 10_000
 
 
 def parser() -> argparse.ArgumentParser:
@@ -34,7 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return COMMANDS[options.command].run(options)
     except (UsageError, SceneError, StoreError, FilmError, BaselineError) as error:
-        print(f"lightproof {options.command}: {error}", file=sys.stderr)
+        print(f"lightproof {options.command}: {plain(str(error), LONGEST_COMPLAINT)}", file=sys.stderr)
         return USAGE
     except KeyboardInterrupt:
         print(f"lightproof {options.command}: interrupted", file=sys.stderr)
