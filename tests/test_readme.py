@@ -30,13 +30,18 @@ def commands(program: str) -> list[str]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A folder like the checkout, so that nothing is written into the checkout itself, and a picture rendered by hand."""
+    """A folder like the checkout, so that nothing is written into the checkout itself, a picture rendered by hand, and a renderer
+    in C++ with the manifest that the README shows."""
     folder = tmp_path_factory.mktemp("readme")
     for name in ("scenes", "references"):
         shutil.copytree(ROOT / name, folder / name)
     (folder / "reports").mkdir()
     exact = lightproof.reference("square-light").value.reshape(lightproof.load("square-light").film.grid)
     films.write(folder / "square-light.exr", exact.shape, {"Y": exact[::-1] / np.pi}, {})
+    (folder / "my-renderer.toml").write_text(next(block for block in blocks("toml") if "my-renderer" in block))
+    if shutil.which("c++"):
+        source = ROOT / "examples/area-light/area_light.cpp"
+        subprocess.run(["c++", "-O2", "-std=c++17", "-o", folder / "my_renderer", source], check=True)
     return folder
 
 
@@ -49,6 +54,8 @@ def test_the_first_two_commands_are_the_ones_that_do_everything():
 @pytest.mark.parametrize("command", commands("lightproof"))
 def test_commands_run_as_written(command, folder):
     """In the README's order: the page is that of the run before it."""
+    if "my-renderer" in command and shutil.which("c++") is None:
+        pytest.skip("there is no C++ compiler: apt-get install g++")
     run = subprocess.run([sys.executable, "-m", "lightproof.cli", *shlex.split(command)[1:]], cwd=folder,
                          capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
