@@ -49,8 +49,9 @@ def test_values_that_no_float32_holds_survive_as_what_they_are(tmp_path):
 
 @pytest.mark.parametrize("names", ["R G B", "Y", "ViewLayer.Combined.R ViewLayer.Combined.G ViewLayer.Combined.B"])
 def test_layers(tmp_path, names):
-    """The light is found under the names that renderers give it, beside other channels; of colours it is the mean."""
-    path = save(tmp_path / "a.exr", {name: RAMP * weight for weight, name in enumerate(names.split(), 1)} | {"Z": 9 + RAMP})
+    """The light is found under the names that renderers give it, beside depth and normals; of colours it is the mean."""
+    others = {"Z": 9 + RAMP, **{f"ViewLayer.Normal.{axis}": RAMP for axis in "XYZ"}}
+    path = save(tmp_path / "a.exr", {name: RAMP * weight for weight, name in enumerate(names.split(), 1)} | others)
     np.testing.assert_allclose(light(path), RAMP * np.mean(range(1, len(names.split()) + 1)), rtol=1e-6)
     np.testing.assert_allclose(light(path, "Z"), 9 + RAMP)
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 PIXELS, VALUES = 1 << 25, 1 << 28  # in one file, twice the largest film's; a header that claims more is not followed
-LUMINANCE, COLOUR = ("Y",), ("R", "G", "B")
+LUMINANCE, COLOUR = ("Y",), ("R", "G", "B")  # Y beside X is no luminance, but a part of a vector
 WRITE_AGAIN = "it may be truncated; write it again"
 
 Window = tuple[int, int, int, int]
@@ -52,9 +52,10 @@ class Image:
     def _lit_layers(self) -> dict[str, tuple[str, ...]]:
         found: dict[str, tuple[str, ...]] = {}
         for layer in dict.fromkeys(name.rpartition(".")[0] for name in self.channels):
+            prefix = f"{layer}." if layer else ""
             for names in (LUMINANCE, COLOUR):
-                full = tuple(f"{layer}.{name}" if layer else name for name in names)
-                if self.channels.keys() >= set(full):
+                full = tuple(prefix + name for name in names)
+                if self.channels.keys() >= set(full) and (names != LUMINANCE or f"{prefix}X" not in self.channels):
                     found.setdefault(layer, full)
         return found
 

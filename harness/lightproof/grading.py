@@ -16,12 +16,14 @@ import numpy as np
 
 from lightproof import exporting, films
 from lightproof.films import FilmError
+from lightproof.radiometry import QUANTITIES
 from lightproof.renderers import views
 from lightproof.scene import PointsFilm, Scene
 from lightproof.suite import Suite
 from lightproof.trial import Result, Status, Trial
 
 METHOD = "picture"
+PROGRAM = ("method_version", "software", "Software")  # attributes that name it
 ALONE = "A single picture is judged as it is, noise included"
 
 
@@ -59,6 +61,12 @@ def counted(results: Sequence[Result], reading: Reading) -> bool:
     return reading.samples is not None or all("samples" in result.settings for result in results)
 
 
+def header(scene: Scene) -> dict[str, str]:
+    """What the header of a picture's film says."""
+    return {"scene": scene.id, "case": scene.case, "digest": scene.digest, "quantity": scene.film.quantity,
+            "unit": QUANTITIES[scene.film.quantity].unit, "method": METHOD}
+
+
 def _replicate(result: Result, number: int, alone: bool) -> Result:
     notes = [ALONE, result.caveat] if alone else [result.caveat]
     trial = replace(result.trial, replicate=number)
@@ -76,7 +84,7 @@ def _result(path: Path, scene: Scene, reading: Reading, multiple: int) -> Result
         film=_elements(path, channels["Y"].reshape(grid), scene, reading),
         quantization=0.0 if half is None else _elements(path, half.reshape(grid), scene, reading),
         samples=samples,
-        version=header.get("software", header.get("method_version", "")),
+        version=next((header[key] for key in PROGRAM if key in header), ""),
         settings=about | ({"samples": samples} if known else {}),
         precision="float32" if half is None else "",
         caveat="" if half is None else "Its format rounds, and half a step of it widens each interval",

@@ -90,7 +90,7 @@ def _record(out: Path, results: Sequence[Result], scene: Scene, home: Suite, cou
         path = record.film_path(result.trial)
         path.parent.mkdir(parents=True, exist_ok=True)
         channels = {"Y": result.film} | ({"quantization": result.quantization} if np.any(result.quantization) else {})
-        films.write(path, scene.film.grid, channels, {"scene": scene.id, "case": scene.case, "digest": scene.digest})
+        films.write(path, scene.film.grid, channels, grading.header(scene))
         record.append(result)
     record.sync()
     return record
