@@ -94,6 +94,16 @@ def test_a_point_is_seen_as_a_small_square():
         np.testing.assert_allclose(view.target, position, atol=1e-4 * distance)
 
 
+def test_a_point_just_above_a_floor_is_a_square_clear_of_it():
+    """lit-floor-to-wall:points, on the wall 0.4 mm above the floor's edge: a square a twentieth as wide. On a furnace's wall:
+    a thousandth of a tenth of its size, since a point has no distance from what it lies on."""
+    scene = SUITE.scene("lit-floor-to-wall:points")
+    view = views.views(scene)[scene.film.positions.index((0, 0.31, 0.0004))]
+    np.testing.assert_allclose(2 * max(view.half), 2e-5)
+    furnace = SUITE.scene("sphere-furnace:irradiance")
+    np.testing.assert_allclose([2 * max(view.half) for view in views.views(furnace)], 1e-4 * furnace.surfaces[0].shape.radius)
+
+
 UNSUPPORTED = [
     ("pyrender", "square-light", "pyrender has no area lights"),
     ("pyrender", "sphere-furnace", "pyrender has no interreflection, and its point lights cast no shadows"),
@@ -175,6 +185,22 @@ def test_a_lamp_hides_what_glows_behind_it(method: str, tmp_path: Path):
     (answer,) = one_process.render(method, [Shot(scene_file.from_table(table, "two-disks"), 1 << 14)], tmp_path)
     exact = np.pi * ((3.7 - 1.9) * 0.3**2 / (0.3**2 + 0.8**2) + 1.9 * 0.9**2 / (0.9**2 + 1.6**2))
     assert answer["film"] == pytest.approx([exact], rel=0.01)
+
+
+def test_no_sky_shines_through_two_halves_of_a_roof(tmp_path: Path):
+    """A roof 4 km wide over the floor, in two halves of one reflectance, under a sky of radiance 1 and a lamp too faint to see:
+    dark. Joined to optimise, the halves are beyond the bounds of Mitsuba's scene, and its sky ends there."""
+    def sheet(x: float, width: float, half: float, height: float) -> dict[str, object]:
+        left, right = x, x + width
+        return {"type": "polygon", "vertices": [[left, -half, height], [left, half, height], [right, half, height],
+                                                [right, -half, height]]}
+
+    table = {"title": "Roof", "max_bounces": 0, "tolerance": 0.01, "film": SUITE.scene("square-light").film.to_table(), "light": [
+        {"id": "sky", "kind": "environment", "radiance": 1.0},
+        {"id": "lamp", "kind": "area", "radiance": 1e-6, "shape": sheet(0, 0.1, 0.05, 1)}], "surface": [
+        {"id": f"half-{number}", "reflectance": 0, "shape": sheet(2000.0 * (number - 2), 2000, 2000, 3)} for number in (1, 2)]}
+    (answer,) = one_process.render("mitsuba/scalar", [Shot(scene_file.from_table(table, "roof"), 256)], tmp_path)
+    assert max(answer["film"]) < 1e-3
 
 
 def test_mitsuba_averages_passes(tmp_path: Path):

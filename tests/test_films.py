@@ -109,6 +109,10 @@ def test_truncated_foreign_and_missing_files(tmp_path, capfd):
             films.read(tmp_path / f"{name}.exr")
     with pytest.raises(films.FilmError, match="no such file"):
         films.read(tmp_path / "none.exr")
+    deep = np.empty((1, 1), object)
+    deep[0, 0] = np.ones(2, np.float32)
+    with pytest.raises(films.FilmError, match="flatten it"):
+        films.read(save(tmp_path / "deep.exr", {"Y": deep}, type=OpenEXR.deepscanline, compression=OpenEXR.ZIPS_COMPRESSION))
     with pytest.raises(films.FilmError, match="whole numbers"):
         films.read(save(tmp_path / "ids.exr", {"Y": RAMP.astype(np.uint32)}))
     assert capfd.readouterr() == ("", "")

@@ -78,7 +78,8 @@ class Mitsuba(Method):
         self.sampler = self.mi.load_dict({"type": self.configuration.sampler})
         world = {light.id: self._light(light) for light in scene.lights}
         world |= {surface.id: self._surface(surface) for surface in scene.surfaces}
-        self.scenes = [self.mi.load_dict(world | self._view(view)) for view in self.views]
+        # Mitsuba 3.9 forgets the bounds of meshes that it joins to optimise, and then a sky shines through them.
+        self.scenes = [self.mi.load_dict(world | self._view(view), optimize=False) for view in self.views]
         return {"setup": time.perf_counter() - start}
 
     def render(self, samples: int, seed: int) -> Rendering:
