@@ -36,6 +36,16 @@ class Mesh:
         normals = geometry.unit(self._crosses())
         return float((normals * self.vertices[self.triangles[:, 0]]).sum(axis=1).min())
 
+    def distance(self, point: np.ndarray) -> float:
+        """From a point (3,) to the nearest of the triangles [m]."""
+        corners = self.vertices[self.triangles] - point
+        following, normals = np.roll(corners, -1, axis=1), geometry.unit(self._crosses())
+        sides = following - corners
+        along = np.clip(-(corners * sides).sum(axis=2) / (sides**2).sum(axis=2), 0, 1)
+        to_sides = np.linalg.norm(corners + along[..., None] * sides, axis=2).min(axis=1)
+        above = (np.cross(corners, following) * normals[:, None]).sum(axis=2).min(axis=1) >= 0
+        return float(np.where(above, np.abs((corners[:, 0] * normals).sum(axis=1)), to_sides).min())
+
     def flipped(self) -> Mesh:
         """The same triangles with front and back exchanged."""
         return Mesh(self.vertices, self.triangles[:, ::-1])

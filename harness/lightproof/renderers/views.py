@@ -2,7 +2,8 @@
 
 A camera film is a camera. An irradiance film is measured as its exitance would be: a diffuse receiver of reflectance rho
 is laid into the film, an orthographic camera just above it sees the radiance L = rho E / pi, and E = pi L / rho. The mean
-over a pixel is the mean over a cell; at a point the receiver is a square far smaller than the distance to anything.
+over a pixel is the mean over a cell; at a point the receiver is a square far smaller than the distance to anything but what it
+lies on.
 """
 
 from __future__ import annotations
@@ -16,7 +17,9 @@ from lightproof import geometry
 from lightproof.renderers import mesh
 from lightproof.scene import AreaLight, CameraFilm, PlaneFilm, PointLight, PointsFilm, Scene, Surface
 
-PATCH = 1e-3  # side of a point's receiver, of the distance to the nearest shape or light
+PATCH = 1e-3  # side of a point's receiver, of the distance over which the light there varies
+CLOSE = 0.05  # the same at most, of the distance to the nearest shape that the point does not lie on
+RESOLVED = 2e-6  # of the largest coordinate: what is smaller is lost in a renderer's float32
 LIFT = 1e-6  # of the film's diagonal: a receiver lies above a surface that coincides with the film
 MARGIN = 1e-4  # of the film's sides: a receiver reaches beyond the film, so that no ray along the border misses it
 SQUARE = 1e-9  # cosine of the angle between the sides of a film that counts as a rectangle
@@ -125,7 +128,7 @@ def _plane(film: PlaneFilm, reflectance: float) -> View:
 
 def _patch(scene: Scene, position: geometry.Vec3, normal: geometry.Vec3) -> View:
     t, b = geometry.tangents(normal)
-    side = PATCH * _clearance(scene, np.array(position))
+    side = _side(scene, np.array(position))
     centre = np.array(position) + 0.01 * side * geometry.unit(normal)
     return _above(centre, side * t, side * b, (1, 1), side, _reflectance(scene))
 
@@ -143,6 +146,21 @@ def _above(centre: np.ndarray, u: np.ndarray, v: np.ndarray, resolution: tuple[i
 
 def _reflectance(scene: Scene) -> float:
     return DARK if scene.reflects else WHITE
+
+
+def _side(scene: Scene, point: np.ndarray) -> float:
+    """Length [m] of the sides of the square that stands for a point."""
+    clearance = _clearance(scene, point)
+    gaps = [_distance(item.shape, point) for item in (*scene.lights, *scene.surfaces) if isinstance(item, AreaLight | Surface)]
+    close = min((gap for gap in gaps if gap > COINCIDENT * clearance), default=np.inf)
+    return min(PATCH * clearance, max(CLOSE * close, RESOLVED * float(np.abs(point).max())))
+
+
+def _distance(shape: geometry.Shape, point: np.ndarray) -> float:
+    """From a point to a shape [m]."""
+    if isinstance(shape, geometry.Sphere):
+        return abs(float(np.linalg.norm(point - shape.center)) - shape.radius)
+    return mesh.tessellate(shape).distance(point)
 
 
 def _clearance(scene: Scene, point: np.ndarray) -> float:
