@@ -18,14 +18,25 @@ import numpy as np
 
 from lightproof.method import Method, Rendering
 from lightproof.renderers import importing, radiance_rays, radiance_scene, radiance_transport, transport
-from lightproof.renderers.radiance_process import Programs, Rtrace
+from lightproof.renderers.radiance_process import Programs, Rtraces
+from lightproof.renderers.radiance_transport import Transport
 from lightproof.scene import CameraFilm, DirectionalLight, PointLight, PointsFilm, Scene, SunDisc
 
 SHAPES, SCENE, OCTREE = "shapes.cal", "scene.rad", "scene.oct"
 STRATA = 64  # parts of a lamp or of the hemisphere, each sampled once from each point
 AT_ONCE = 1 << 18  # rays made at a time
-EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-dj", "1", "-st", "1", "-lw", "0", "-aa", "0", "-as", "0"]
-"""No shadow ray is left out, lamps are sampled all over, no path is cut by its weight, no indirect light interpolated."""
+EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-dj", "1", "-st", "1", "-lw", "0"]
+"""No shadow ray is left out, lamps are sampled all over, no path is cut by its weight."""
+CACHED = ["-aa", "0.1", "-ar", "64", "-ad", "512", "-lw", "1e-4"]
+
+CACHE, NATIVE, QUASI_RANDOM = "ambient-cache", "native-lamps", "quasi-random"
+CAVEATS = {
+    CACHE: "Radiance's ambient cache interpolates indirect light between points, which no number of samples makes exact.",
+    NATIVE: "Radiance samples a lamp that is no parallelogram as a square of the same area, a round one as a box inside it: light"
+            " is off by several per cent however many samples.",
+    QUASI_RANDOM: "Radiance's own order of random numbers is a fixed sequence of 2,048: cells in penumbrae settle some thousandths"
+                  " of the brightest away from the truth.",
+}
 
 
 class Radiance(Method):
@@ -34,7 +45,7 @@ class Radiance(Method):
     def __init__(self, name: str, threads: int):
         super().__init__(name, threads)
         self.option = name.partition("/")[2]
-        self.rtrace: Rtrace | None = None
+        self.rtraces: Rtraces | None = None
 
     def open(self) -> None:
         folder = Path(importing.renderer("pyradiance", "radiance").__file__).parent
@@ -47,27 +58,38 @@ class Radiance(Method):
         return f"{radiance} (pyradiance {importlib.metadata.version('pyradiance')})"
 
     def settings(self) -> Mapping[str, Any]:
-        return {"options": " ".join(self.options), "strata": self.strata, "processes": 1}
+        return {"options": " ".join(self.options), "lamps": "native" if self.planned.native else "sampled evenly",
+                "strata": self.strata}
 
     def unsupported(self, scene: Scene) -> str | None:
         if scene.film.quantity == "solid_angle":
             return "Radiance gives no solid angles"
-        return transport.unsupported(scene) or radiance_transport.unsupported(scene)
+        reason = transport.unsupported(scene) or radiance_transport.unsupported(scene, self._plan(scene))
+        if self.option == CACHE and not reason and not self._plan(scene).bounces:
+            return "no light here is indirect, so that Radiance interpolates none"
+        return reason
+
+    def caveat(self, scene: Scene) -> str:
+        even = all(radiance_transport.is_parallelogram(lamp.shape) for lamp in radiance_transport.lamps(scene))
+        return "" if self.option == NATIVE and even else CAVEATS.get(self.option, "")
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()
-        self.film = scene.film
-        self.strata, self.options = strata(scene), options(scene, self.option)
+        self.film, self.planned = scene.film, self._plan(scene)
+        self.strata = 1 if self.option == CACHE else strata(scene, self.planned)
+        sequence = "-u-" if self.option == QUASI_RANDOM else "-u+"
+        self.options = options(scene, self.planned, self.strata, self.option == CACHE, sequence)
         place = Path(self.folder.name)
         (place / SHAPES).write_text(radiance_scene.SHAPES)
-        (place / SCENE).write_text(radiance_scene.describe(scene, SHAPES))
-        (place / OCTREE).write_bytes(self.programs.output("oconv", place / SCENE))
-        if self.rtrace:
-            self.rtrace.close()
-        self.rtrace = self.programs.rtrace(self.options, place / OCTREE)
+        (place / SCENE).write_text(radiance_scene.describe(scene, self.planned, SHAPES))
+        self.octree = place / OCTREE
+        self.octree.write_bytes(self.programs.output("oconv", place / SCENE))
+        self._start()
         return {"setup": time.perf_counter() - start}
 
     def render(self, samples: int, seed: int) -> Rendering:
+        if self.option == CACHE:
+            self._start()
         generator = np.random.default_rng(seed)
         points = math.ceil(samples / self.strata)
         passes = math.ceil(points * math.prod(self.film.grid) / AT_ONCE)
@@ -75,15 +97,23 @@ class Radiance(Method):
         film = np.mean([self._pass(each, generator) for _ in range(passes)], axis=0)
         return Rendering(film, samples=passes * each * self.strata)
 
+    def _plan(self, scene: Scene) -> Transport:
+        return radiance_transport.transport_of(scene, self.option == NATIVE)
+
+    def _start(self) -> None:
+        """New processes, with empty caches."""
+        if self.rtraces:
+            self.rtraces.close()
+        self.rtraces = self.programs.rtraces(self.options, self.octree, self.threads)
+
     def _pass(self, count: int, generator: np.random.Generator) -> np.ndarray:
-        values = self.rtrace.trace(radiance_rays.rays(self.film, count, generator))
+        values = self.rtraces.trace(radiance_rays.rays(self.film, count, generator))
         return values.reshape(-1, count).mean(axis=1)
 
 
-def strata(scene: Scene) -> int:
+def strata(scene: Scene, planned: Transport) -> int:
     """Parts of each lamp, or of the hemisphere, that are sampled from one point. One where paths go on from there; and where
     each element counts by itself, because Radiance leaves out a part that it sees at a cosine below 1e-4 times their number."""
-    planned = radiance_transport.transport_of(scene)
     lamps = radiance_transport.lamps(scene) + [light for light in scene.lights if isinstance(light, SunDisc)]
     if planned.bounces:
         aimed = planned.aims and (lamps or any(isinstance(light, PointLight | DirectionalLight) for light in scene.lights))
@@ -93,10 +123,10 @@ def strata(scene: Scene) -> int:
     return STRATA if lamps and looks and not each else 1
 
 
-def options(scene: Scene, option: str) -> list[str]:
-    """Of rtrace: as many bounces as count, a lamp or the hemisphere in `strata`."""
-    bounces, parts = radiance_transport.transport_of(scene).bounces, strata(scene)
-    lamps = ["-ds", "0" if bounces or parts == 1 else "1e-4"]
-    around = ["-ab", str(bounces), "-ad", str(parts if bounces else 1), "-lr", str(bounces + 1)]
+def options(scene: Scene, planned: Transport, parts: int, cache: bool, sequence: str) -> list[str]:
+    """Of rtrace: as many bounces as count; a lamp or the hemisphere in `parts`; indirect light from a `cache` or not."""
+    lamps = ["-ds", "0" if planned.bounces or parts == 1 else "1e-4"]
+    around = ["-ab", str(planned.bounces), "-lr", str(planned.bounces + 1), "-as", "0"]
+    stored = CACHED if cache else ["-aa", "0", "-ad", str(parts if planned.bounces else 1)]
     irradiance = [] if isinstance(scene.film, CameraFilm) else ["-I+"]
-    return [*EXACT, *lamps, *around, *irradiance, "-u-" if option == "quasi-random" else "-u+"]
+    return [*EXACT, *lamps, *around, *stored, *irradiance, sequence]

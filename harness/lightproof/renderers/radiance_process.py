@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import subprocess
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ BLOCK = 2048  # rays at a time: their answers fit into a pipe, so that neither s
 
 
 class RadianceFailed(Exception):
-    """A program of Radiance ended; what it said is in the worker's log."""
+    """A program of Radiance ended; the message holds what it said last."""
 
 
 class Programs:
@@ -23,35 +24,66 @@ class Programs:
     def __init__(self, folder: Path, scenes: Path):
         self.bin = folder / "bin"
         self.environment = {**os.environ, "RAYPATH": f"{scenes}:{folder / 'lib'}"}
+        self.said = scenes / "said.txt"
 
     def output(self, program: str, *arguments: str | Path) -> bytes:
         """What a program prints. Raises RadianceFailed."""
-        done = subprocess.run([self.bin / program, *arguments], stdout=subprocess.PIPE, env=self.environment, check=False)
+        done = subprocess.run([self.bin / program, *arguments], capture_output=True, env=self.environment, check=False)
         if done.returncode:
-            raise RadianceFailed(f"{program} ended with status {done.returncode}")
+            raise RadianceFailed(_ending(program, done.returncode, done.stderr))
         return done.stdout
 
-    def rtrace(self, options: Sequence[str], octree: Path) -> Rtrace:
-        """A running rtrace."""
-        return Rtrace([str(self.bin / "rtrace"), "-h-", "-fdd", *options, str(octree)], self.environment)
+    def rtraces(self, options: Sequence[str], octree: Path, most: int) -> Rtraces:
+        """Running rtraces, `most` of them in the end."""
+        command = [str(self.bin / "rtrace"), "-h-", "-fdd", *options, str(octree)]
+        return Rtraces(lambda: Rtrace(command, self.environment, self.said), most)
 
 
-class Rtrace:
-    """One rtrace process, which draws its random numbers from one stream from ray to ray. It starts the stream anew from the
-    clock's second, so no two processes are started in the same one."""
+class Rtraces:
+    """Several rtrace processes that share the rays. Each starts its stream of random numbers from the clock's second, so no two
+    may start in the same one: the first waits for a new second, the others join when one has come."""
 
     second = 0
 
-    def __init__(self, command: Sequence[str], environment: dict[str, str]):
-        while int(time.time()) <= Rtrace.second:
+    def __init__(self, start: Callable[[], Rtrace], most: int):
+        self._start = start
+        self._most = most
+        self._running: list[Rtrace] = []
+        while int(time.time()) <= Rtraces.second:
             time.sleep(0.01)
-        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
-        self.trace(np.eye(6)[-1:])  # any ray: when it is answered, the stream of random numbers has begun
-        Rtrace.second = int(time.time())
+        self._join()
 
     def trace(self, rays: np.ndarray) -> np.ndarray:
         """The first channel of what arrives along rays (n, 6), as (n,). Raises RadianceFailed."""
-        return np.concatenate([self._answer(rays[i : i + BLOCK]) for i in range(0, len(rays), BLOCK)])
+        if len(self._running) < self._most and int(time.time()) > Rtraces.second:
+            self._join()
+        with ThreadPoolExecutor(len(self._running)) as threads:
+            shares = np.array_split(rays, len(self._running))
+            return np.concatenate([*threads.map(Rtrace.trace, self._running, shares)])
+
+    def close(self) -> None:
+        """End the processes."""
+        for rtrace in self._running:
+            rtrace.close()
+
+    def _join(self) -> None:
+        self._running.append(self._start())
+        Rtraces.second = int(time.time())
+
+
+class Rtrace:
+    """One rtrace process, which draws its random numbers from one stream from ray to ray."""
+
+    def __init__(self, command: Sequence[str], environment: dict[str, str], said: Path):
+        self._said = said
+        pipe = subprocess.PIPE
+        with said.open("wb") as errors:
+            self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, env=environment)
+        self.trace(np.eye(6)[-1:])  # any ray: when it is answered, the stream of random numbers has begun
+
+    def trace(self, rays: np.ndarray) -> np.ndarray:
+        """As `Rtraces.trace`."""
+        return np.concatenate([self._answer(rays[i : i + BLOCK]) for i in range(0, max(len(rays), 1), BLOCK)])
 
     def close(self) -> None:
         """End the process."""
@@ -59,6 +91,8 @@ class Rtrace:
         self._process.communicate()
 
     def _answer(self, rays: np.ndarray) -> np.ndarray:
+        if not len(rays):
+            return np.zeros(0)
         flush = np.zeros((1, 6))  # a ray without direction has rtrace write what it holds back
         try:
             self._process.stdin.write(np.vstack([rays, flush]).tobytes())
@@ -67,5 +101,10 @@ class Rtrace:
             pass
         values = np.frombuffer(self._process.stdout.read(24 * (len(rays) + 1)))
         if len(values) < 3 * (len(rays) + 1):
-            raise RadianceFailed(f"rtrace ended with status {self._process.wait()}")
+            raise RadianceFailed(_ending("rtrace", self._process.wait(), self._said.read_bytes()))
         return values.reshape(-1, 3)[:-1, 0]
+
+
+def _ending(program: str, status: int, said: bytes) -> str:
+    lines = said.decode(errors="replace").strip().splitlines() or ["nothing"]
+    return f"{program} ended with status {status}; it said: {lines[-1]}"

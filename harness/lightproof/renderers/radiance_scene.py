@@ -16,7 +16,7 @@ import numpy as np
 from lightproof import geometry
 from lightproof.geometry import Cap, Cylinder, Disk, Polygon, Shape, Sphere
 from lightproof.renderers import radiance_apertures
-from lightproof.renderers.radiance_transport import Transport, is_lamp, is_parallelogram, transport_of
+from lightproof.renderers.radiance_transport import Transport, is_lamp
 from lightproof.scene import (
     AreaLight,
     CameraFilm,
@@ -52,7 +52,8 @@ way = (-qb - Sqrt(gap)) / (1 - sq(da));
 level = wa + way*da;
 on_tube = if(gap, if(way, if(level, if(A7 - level, 1, 0), 0), 0), 0);
 { triangle: A1..A4, A5..A8, A9..A12 the half-space on the inner side of each edge }
-on_triangle = if(A1*Px + A2*Py + A3*Pz - A4, if(A5*Px + A6*Py + A7*Pz - A8, if(A9*Px + A10*Py + arg(11)*Pz - arg(12), 1, 0), 0), 0);
+on_triangle = if(A1*Px + A2*Py + A3*Pz - A4,
+  if(A5*Px + A6*Py + A7*Pz - A8, if(A9*Px + A10*Py + arg(11)*Pz - arg(12), 1, 0), 0), 0);
 { polygon: A1..A3 and A4..A6 axes in its plane, A7 number of edges, then its corners along these axes, the first one again
   at the end; a point is inside where a line to one side crosses an odd number of edges }
 pu = Px*A1 + Py*A2 + Pz*A3;
@@ -73,9 +74,9 @@ overcast = (1 + 2*Dz) / 3;
 """
 
 
-def describe(scene: Scene, shapes: str) -> str:
+def describe(scene: Scene, transport: Transport, shapes: str) -> str:
     """The scene's text; `shapes` names the file that holds SHAPES."""
-    writer = Writer(scene, transport_of(scene), *radiance_apertures.whole(scene), shapes)
+    writer = Writer(scene, transport, *radiance_apertures.whole(scene), shapes)
     parts = [part for light in scene.lights for part in writer.light(light)]
     parts += [part for surface in scene.surfaces for part in writer.surface(surface)]
     return "\n".join(parts) + "\n"
@@ -146,7 +147,7 @@ class Writer:
         yield _polygon(sun.id, f"{sun.id}-face", self.centre + face)
 
     def _lamp(self, name: str, shape: Shape, radiance: float) -> Iterator[str]:
-        if is_parallelogram(shape) and self.transport.aims:
+        if self.transport.aims_at(shape):
             yield _material("void", "light", name, _grey(radiance))
             yield from self._body(name, f"{name}-face", shape)
         elif self.transport.aperture:

@@ -36,27 +36,33 @@ class Transport:
     bounces: int
     aims: bool = True
     aperture: bool = False
+    native: bool = False
+
+    def aims_at(self, shape: Shape) -> bool:
+        """Whether a lamp of this shape is a light that shadow rays aim at."""
+        return self.aims and (is_parallelogram(shape) or (self.native and not isinstance(shape, Cap)))
 
 
-def transport_of(scene: Scene) -> Transport:
-    """What Radiance has to do for a scene."""
-    shaped = [lamp for lamp in lamps(scene) if not is_parallelogram(lamp.shape)]
+def transport_of(scene: Scene, native: bool = False) -> Transport:
+    """What Radiance has to do for a scene; with `native` shadow rays aim at lamps of every shape as Radiance samples them."""
+    shaped = [] if native else [lamp for lamp in lamps(scene) if not is_parallelogram(lamp.shape)]
     camera = isinstance(scene.film, CameraFilm)
     reflections = transport.reflections(scene)
     direct = max(reflections - camera, 0)
     if not _around(scene) and not shaped:
-        return Transport(direct)
+        return Transport(direct, native=native)
     if not _around(scene) and direct == 0 and len(shaped) == 1:
         return Transport(0, aperture=True)
-    return Transport(reflections + (not camera), aims=scene.max_bounces == "all" or not scene.reflects)
+    aims = scene.max_bounces == "all" or not scene.reflects
+    return Transport(reflections + (not camera), aims, native=native)
 
 
-def unsupported(scene: Scene) -> str | None:
-    """Why no setting of Radiance follows the light of a scene, or None."""
-    planned, suns = transport_of(scene), _suns(scene)
+def unsupported(scene: Scene, planned: Transport) -> str | None:
+    """Why Radiance cannot follow the light of a scene as planned, or None."""
+    suns = _suns(scene)
     if sum(isinstance(light, Environment | OvercastSky) for light in scene.lights) > 1:
         return "Radiance sees one sky at a time"
-    if suns and (len(suns) > 1 or _around(scene) or not all(is_parallelogram(lamp.shape) for lamp in lamps(scene))):
+    if suns and (len(suns) > 1 or _around(scene) or not all(planned.aims_at(lamp.shape) for lamp in lamps(scene))):
         return "the aperture through which Radiance is shown a distant disc would hide a part of what else shines"
     if any(sun.half_angle > WIDEST for sun in suns):
         return f"the flat aperture through which Radiance is shown a distant disc holds one of at most {WIDEST} degrees"

@@ -24,6 +24,13 @@ def _ours(name: str, target: str, nightly: bool = False) -> Entry:
     return Entry(name, f"lightproof.estimators.{target}", worker=OURS, nightly=nightly)
 
 
+def _sampling(name: str, target: str, nightly: bool = False) -> list[Entry]:
+    """A method that samples direct light, with each kind of points in both precisions."""
+    points = ("", "jitter", "lattice", "sobol")
+    options = ["-".join(filter(None, (kind, precision))) for precision in ("", "float64") for kind in points]
+    return [_ours(f"{name}/{option}" if option else name, target, nightly=nightly or bool(option)) for option in options]
+
+
 def _mitsuba(option: str, worker: str = "mitsuba") -> Entry:
     """A configuration; what is compiled for a variant of its own lives in a process of its own."""
     return Entry(f"mitsuba/{option}", "lightproof.renderers.mitsuba:Mitsuba", worker, extra="mitsuba", nightly=True)
@@ -35,16 +42,19 @@ def _cycles(option: str) -> Entry:
     return Entry(name, "lightproof.renderers.cycles:Cycles", worker=name, extra="cycles", nightly=True)
 
 
+def _radiance(option: str) -> Entry:
+    return Entry(f"radiance/{option}", "lightproof.renderers.radiance:Radiance", "radiance", extra="radiance", nightly=True)
+
+
 METHODS = {
     entry.name: entry
     for entry in (
         _ours("analytic", "analytic:Analytic"),
         _ours("riemann-area", "riemann_area:RiemannArea"),
         _ours("riemann-hemisphere", "riemann_hemisphere:RiemannHemisphere"),
-        _ours("mc-area", "mc_area:McArea"),
-        _ours("mc-area/float64", "mc_area:McArea", nightly=True),
-        _ours("mc-hemisphere", "mc_hemisphere:McHemisphere"),
-        _ours("mc-cosine", "mc_cosine:McCosine"),
+        *_sampling("mc-area", "mc_area:McArea"),
+        *_sampling("mc-hemisphere", "mc_hemisphere:McHemisphere"),
+        *_sampling("mc-cosine", "mc_cosine:McCosine"),
         _ours("path", "path:Path"),
         Entry("mitsuba", "lightproof.renderers.mitsuba:Mitsuba", worker="mitsuba", extra="mitsuba"),
         _mitsuba("scalar", worker="mitsuba-scalar"),
@@ -56,6 +66,7 @@ METHODS = {
         Entry("luxcore/random", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
         Entry("luxcore/bidirectional", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
         Entry("radiance", "lightproof.renderers.radiance:Radiance", worker="radiance", extra="radiance"),
+        *map(_radiance, ("ambient-cache", "native-lamps", "quasi-random")),
         Entry("pyrender", "lightproof.renderers.pyrender:Pyrender", worker="pyrender", extra="pyrender"),
     )
 }
