@@ -106,6 +106,13 @@ def test_the_doctor_says_what_is_wrong(tmp_path, capsys, fault, line):
     assert line in "\n".join(each for each in out.splitlines() if "FAIL" in each), out
 
 
+def test_the_doctor_of_a_renderer_without_chance(tmp_path, capsys):
+    """A manifest that says deterministic: the same film for every seed is right then, and there is no variance to try."""
+    status, out = doctor(_described(tmp_path, "ignores-seed", "deterministic = true"), capsys)
+    assert (status, "samples:" in out) == (0, False), out
+    assert "other seed: same film, as deterministic in its manifest has it" in out
+
+
 def test_the_doctor_asks_for_what_the_manifest_excludes(tmp_path, capsys):
     """A program that leaves it to its manifest to decline, and renders whatever it is asked for: told so."""
     status, out = doctor(_described(tmp_path, "declines-nothing", '[supports]\nlights = ["point"]\n'), capsys)

@@ -106,6 +106,14 @@ def test_a_fault_costs_its_own_trial(render, tmp_path, fault, mode, message):
     assert faulty.film is None
 
 
+def test_the_last_line_needs_no_end(tmp_path):
+    """A version, or an answer, printed without a newline before the program ends."""
+    (tmp_path / "mine.toml").write_text('name = "mine"\ncommand = ["true"]\nversion = ["printf", "mine 1.0"]\n')
+    (entry,) = selection.methods([str(tmp_path / "mine.toml")], [])
+    with Pool(threads=1) as pool:
+        assert pool.open(entry).version == "mine 1.0"
+
+
 def test_an_answer_too_many_is_noticed_late(render, tmp_path):
     """A second answer that comes when the first has been taken costs the next trial, and no more."""
     path = described(tmp_path, fault="twice-later")

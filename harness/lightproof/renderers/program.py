@@ -49,28 +49,27 @@ class Program:
         return line
 
     def line(self) -> bytes:
-        """The next line. Raises AnswerError where there is none."""
+        """The next line, or what there is at the end of the output. Raises AnswerError where there is nothing."""
         searched = 0
         while (end := self._buffer.find(b"\n", searched)) < 0:
             searched = len(self._buffer)
             if searched > LONGEST_ANSWER:
                 raise AnswerError(f"it wrote {self._quoted()} and so on; an answer is a line of at most {LONGEST_ANSWER:,} bytes")
-            if self._readable(POLL) and not self._read():
-                raise AnswerError(self._silence())
-            if self.ended and not self._readable(0):
-                raise AnswerError(self._silence())
+            if self._is_silent():
+                if not self._buffer:
+                    raise AnswerError(self._silence())
+                end = len(self._buffer)
+                break
         line = bytes(self._buffer[:end])
         del self._buffer[: end + 1]
         return line
 
     def end(self) -> None:
         """Wait until a program that has answered ends. Raises AnswerError where it fails, or writes more."""
-        while not self.ended or self._readable(0):
-            if self._readable(POLL) and not self._read():
-                self._process.wait()
-                break
+        self._only_one()
+        while not self._is_silent():
             self._only_one()
-        if self._process.returncode:
+        if self._process.wait():
             raise AnswerError(f"it answered, but then it {ending(self._process.returncode)}")
 
     def close(self) -> None:
@@ -87,6 +86,12 @@ class Program:
             with contextlib.suppress(psutil.Error):
                 process.kill()
         self._process.wait()
+
+    def _is_silent(self) -> bool:
+        """Wait a little for more; whether there will be none."""
+        if self._readable(POLL):
+            return not self._read()
+        return self.ended and not self._readable(0)
 
     def _silence(self) -> str:
         try:
