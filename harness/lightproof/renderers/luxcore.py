@@ -24,7 +24,6 @@ from lightproof.scene import AreaLight, DirectionalLight, Environment, PointLigh
 
 BEFORE = ("OpenEXR", "scipy.spatial")  # compiled modules that are used later; loaded after pyluxcore, each aborts the process
 PASS = 4096  # samples a pixel at a time: the film adds up in float32 and is off by 2e-5 after these, by 7e-4 after 65,536
-BOUNCES = 2000  # the most for which its Sobol sequence has dimensions
 SMALLEST = 8  # pixels along a side: of a smaller picture each pixel gets many samples more than were asked for
 POLL = 0.001  # s
 
@@ -62,7 +61,7 @@ class LuxCore(Method):
                 return "LuxCore is not given sun discs or overcast skies yet"
         if self.engine == ENGINES[BIDIRECTIONAL] and _stops_early(scene):
             return "LuxCore's bidirectional tracer cannot stop after a number of reflections: it joins paths of every two lengths"
-        return transport.unsupported(scene, BOUNCES) or views.unsupported(scene)
+        return transport.unsupported(scene) or views.unsupported(scene)
 
     def caveat(self, scene: Scene) -> str:
         known = []
