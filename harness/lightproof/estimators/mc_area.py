@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
-from lightproof.estimators.composed import Composed
-from lightproof.estimators.estimator import sampled, variance_of_mean
+from lightproof.estimators.estimator import sampled
 from lightproof.estimators.limits import no_caps, no_cylinders, no_glowing_inside, no_reflections, no_skies, no_solid_angle
 from lightproof.estimators.paths import Paths
 from lightproof.estimators.pieces import Piece, aimed
-from lightproof.estimators.points import Random
+from lightproof.estimators.sampling import Sampling
 from lightproof.estimators.views import View
 from lightproof.method import Rendering
 from lightproof.scene import Scene
@@ -20,17 +16,12 @@ from lightproof.scene import Scene
 SEEDS = 2**24  # streams that one seed has for the pieces of lights
 
 
-class McArea(Composed):
+class McArea(Sampling):
     """Beside the kernel's views, what cameras see by paths of one reflection, which trace the first ray."""
 
+    domain = "area of the light"
+    density = "1/A per area, uniform over the light; of a sphere, over the cap that faces the receiver"
     limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_skies, no_glowing_inside)
-
-    def __init__(self, name: str, threads: int):
-        super().__init__(name, threads)
-        self.real = np.float64 if name.endswith("/float64") else np.float32
-
-    def settings(self) -> Mapping[str, Any]:
-        return {"sampler": "independent", "density": "uniform over the light; of a sphere, over the cap that faces the receiver"}
 
     def build(self, scene: Scene) -> None:
         super().build(scene)
@@ -45,8 +36,8 @@ class McArea(Composed):
         return aimed(scene, seen)
 
     def composed(self, samples: int, seed: int) -> Rendering:
-        counts = self.counts(samples)
-        films, variances = zip(*[self.drawn(index, count, seed) for index, count in enumerate(counts)], strict=True)
+        drawn = [self.drawn(index, count, seed) for index, count in enumerate(self.counts(samples))]
+        films, counts, variances = zip(*drawn, strict=True)
         return Rendering(sum(films), sum(counts), None if any(one is None for one in variances) else sum(variances))
 
     def counts(self, samples: int) -> list[int]:
@@ -55,11 +46,12 @@ class McArea(Composed):
         shares = power / power.sum() if power.any() else np.full(len(power), 1 / len(power))
         return [max(1, round(samples * share)) for share in shares]
 
-    def drawn(self, index: int, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray | None]:
-        """Film (n,) of one piece alone and its variance (n,)."""
-        points = Random(samples, int(seed) * SEEDS + index)
+    def drawn(self, index: int, samples: int, seed: int) -> tuple[np.ndarray, int, np.ndarray | None]:
+        """Film (n,) of one piece alone, samples taken, and its variance (n,)."""
+        points = self.points(samples, int(seed) * SEEDS + index)
         pivots, totals, squares = self.view.factor * self.pieces[index].sums(self.view, points, self.real(1), self.threads)
-        return (pivots + totals) / samples, variance_of_mean(totals, self.view.factor * squares, samples)
+        variance = self.variance(totals, self.view.factor * squares, points.samples)
+        return (pivots + totals) / points.samples, points.samples, variance
 
     def traced(self, samples: int, seed: int) -> Rendering:
         return Rendering(*sampled(self.paths.add, self.size, samples, seed, self.threads))

@@ -7,6 +7,7 @@ from lightproof.estimators.meeting import Cosine
 
 
 class McCosine(McHemisphere):
-    """As mc-hemisphere, with density cos/pi per solid angle."""
+    """As mc-hemisphere, with another density."""
 
-    density = Cosine
+    density = "cos(theta)/pi per solid angle"
+    source = Cosine

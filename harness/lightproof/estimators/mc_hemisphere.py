@@ -7,46 +7,48 @@ from typing import ClassVar
 import numpy as np
 
 from lightproof.estimators import directions
-from lightproof.estimators.composed import Composed
-from lightproof.estimators.estimator import sampled, variance_of_mean
+from lightproof.estimators.estimator import sampled
 from lightproof.estimators.limits import no_bulbs, no_caps, no_cylinders, no_reflections, no_solid_angle
 from lightproof.estimators.meeting import Cosine, Uniform
 from lightproof.estimators.pieces import Piece, met
-from lightproof.estimators.points import Random
+from lightproof.estimators.sampling import Sampling
 from lightproof.estimators.views import View, view_from_outside
 from lightproof.method import Rendering
 from lightproof.scene import Scene
 
 
-class McHemisphere(Composed):
+class McHemisphere(Sampling):
     """Any direct light that fills a solid angle."""
 
+    domain = "hemisphere of the receiver"
+    density = "1/(2 pi) per solid angle"
     samples_lights = False
     limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_bulbs)
-    density: ClassVar[type[Uniform | Cosine]] = Uniform
+    source: ClassVar[type[Uniform | Cosine]] = Uniform
 
     def seen(self, scene: Scene) -> View | None:
         return view_from_outside(scene)
 
     def sources(self, scene: Scene, seen: View) -> list[Piece]:
-        return met(scene, seen, self.density)
+        return met(scene, seen, self.source)
 
     def composed(self, samples: int, seed: int) -> Rendering:
         """All pieces are looked for in the same directions. A direction meets one of them, so that the values' products
         vanish: the covariance of two sums over N directions is minus the product of their means over N."""
-        points = Random(samples, seed)
+        points = self.points(samples, seed)
+        taken = points.samples
         sums = np.array([self.view.factor * piece.sums(self.view, points, self.real(1), self.threads) for piece in self.pieces])
-        films = (sums[:, 0] + sums[:, 1]) / samples
+        films = (sums[:, 0] + sums[:, 1]) / taken
+        own = [self.variance(totals, self.view.factor * squares, taken) for _, totals, squares in sums]
         film = films.sum(axis=0)
-        if samples < 2:
-            return Rendering(film, samples)
-        own = sum(variance_of_mean(totals, self.view.factor * squares, samples) for _, totals, squares in sums)
-        shared = (film**2 - (films**2).sum(axis=0)) / (samples - 1)
-        return Rendering(film, samples, np.maximum(own - shared, 0))
+        if own[0] is None:
+            return Rendering(film, taken)
+        shared = (film**2 - (films**2).sum(axis=0)) / (taken - 1)
+        return Rendering(film, taken, np.maximum(sum(own) - shared, 0))
 
     def traced(self, samples: int, seed: int) -> Rendering:
         items, skies, _, film, elements, contact = self.world.arrays
-        power = {Uniform: 0, Cosine: 1}[self.density]
+        power = {Uniform: 0, Cosine: 1}[self.source]
 
         def add(first: int, last: int, span: tuple[int, int], own_seed: int, out: np.ndarray) -> None:
             directions.estimate(items, skies, film, elements[first:last], contact, first, own_seed, span, power, out)

@@ -1,4 +1,5 @@
-"""The points at which an integrand is taken: numbered from 0, in blocks, four coordinates each, in units of TICK.
+"""The points at which an integrand is taken: numbered from 0, in blocks, four coordinates each, in units of TICK. Here the
+independent ones and the grid; `jitter`, `lattice` and `sobol` have one kind each.
 
 `opened(points, element, block)` is what the points of a block have in common, `drawn(i, opened, model)` its point i: two
 coordinates over the light or the hemisphere, two over the film's element.
@@ -9,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numba import types
 from numba.extending import overload
 
 from lightproof.estimators.rng import TICK, block_keys, draws, stream
@@ -50,7 +52,7 @@ def opened(points, element, block):
 
 @overload(opened)
 def _opened(points, element, block):
-    return {Random: _opened_random, Grid: _opened_grid}[points.instance_class]
+    return {Random: _opened_random, Grid: _opened_grid}.get(points.instance_class)
 
 
 def _opened_random(points, element, block):
@@ -67,8 +69,9 @@ def drawn(i, opened, model):
 
 @overload(drawn)
 def _drawn(i, opened, model):
-    midpoint = getattr(opened, "instance_class", None) is Line
-    return _drawn_midpoint if midpoint else lambda i, opened, model: draws(i, opened, model)
+    if isinstance(opened, types.UniTuple):
+        return lambda i, opened, model: draws(i, opened, model)
+    return _drawn_midpoint if getattr(opened, "instance_class", None) is Line else None
 
 
 def _drawn_midpoint(i, opened, model):
