@@ -173,11 +173,11 @@ def _step(rung: Rung, finding: Finding) -> Step:
         max_error=float(np.abs(rung.bias[mean + 1:]).max()),
         seconds_setup=_median_seconds(rung, "setup"),
         seconds_compile=_median_seconds(rung, "compile"),
-        seconds_render=_median_seconds(rung, "render", absent=np.nan),
+        seconds_render=_median_seconds(rung, "render"),
         peak_memory_mb=max(result.peak_memory_mb for result in rung.results),
         message=finding.message,
     )
 
 
-def _median_seconds(rung: Rung, phase: str, absent: float = 0.0) -> float:
-    return float(np.median([result.seconds.get(phase, absent) for result in rung.results]))
+def _median_seconds(rung: Rung, phase: str) -> float:
+    return float(np.median([result.seconds.get(phase, 0.0) for result in rung.results]))

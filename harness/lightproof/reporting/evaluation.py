@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -157,8 +158,15 @@ def evaluate(record: Store, suite: Suite) -> Evaluation:
         of_scene.setdefault(result.trial.method, []).append(result)
     judge = Judge(record, suite)
     cells = [
-        Cell(scene, method, tuple(results), judge.reference(results), judge.judge(results))
+        Cell(scene, method, tuple(results), judge.reference(results), _timed(judge.judge(results), results))
         for scene in record.scenes
         for method, results in sorted(groups.get((scene.id, scene.case), {}).items(), key=lambda item: _rank(item[0]))
     ]
     return Evaluation(record.run, record.scenes, tuple(cells))
+
+
+def _timed(judged: Verdict, results: Sequence[Result]) -> Verdict:
+    """The verdict; times that no result tells are no numbers."""
+    if all("render" in result.seconds for result in results if result.status is Status.OK):
+        return judged
+    return replace(judged, steps=tuple(replace(step, seconds_render=math.nan) for step in judged.steps))
