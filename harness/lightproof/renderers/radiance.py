@@ -32,10 +32,10 @@ CACHED = ["-aa", "0.1", "-ar", "64", "-ad", "512", "-lw", "1e-4"]
 CACHE, NATIVE, QUASI_RANDOM = "ambient-cache", "native-lamps", "quasi-random"
 CAVEATS = {
     CACHE: "Radiance's ambient cache interpolates indirect light between points, which no number of samples makes exact.",
-    NATIVE: "Radiance samples a lamp that is no parallelogram as a square of the same area, a round one as a box inside it: light"
-            " is off by several per cent however many samples.",
-    QUASI_RANDOM: "Radiance's own order of random numbers is a fixed sequence of 2,048: cells in penumbrae settle some thousandths"
-                  " of the brightest away from the truth.",
+    NATIVE: "Radiance samples a lamp that is no parallelogram as a square of its area, a round one as a box inside it: light is"
+            " off by several per cent however many samples.",
+    QUASI_RANDOM: "Radiance's own order of random numbers is a fixed sequence of 2,048: cells in penumbrae settle a few"
+                  " thousandths of the brightest away from the truth.",
 }
 
 
