@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 import tempfile
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
@@ -236,10 +237,30 @@ def test_no_record_leads_out_of_its_run(film):
 @pytest.mark.parametrize(("reader", "data", "message"), [
     ("scene file", b"#" * (scene_file.MAX_BYTES + 1), "larger than"),
     ("manifest file", b"#" * (scene_file.MAX_BYTES + 1), "larger than"),
+    ("scene file", b"tolerance = " + b"9" * 5000, "is not TOML"),
+    ("scene file", b"a" + b".a" * 100_000 + b" = 1", "a key of more than 32 parts"),
+    ("manifest file", b"[a" + b" . 'a'" * 100_000 + b"]", "a key of more than 32 parts"),
+    ("reference", b"a" + b".a" * 100_000 + b" = 1", "a key of more than 32 parts"),
+    ("reference", b"a = " + b"[" * 100_000, "is not TOML"),
     ("answer", b"[" * 100_000, "which is no JSON"),
     ("answer", as_json({**ANSWER, "samples": 10**400}), "whole number"),
 ])
 def test_what_is_too_large_or_too_deep_says_so(reader, data, message):
-    """A megabyte of comments, a hundred thousand brackets, a number of 400 digits."""
+    """A megabyte of comments, a hundred thousand brackets, keys that the parser would take hours over, 400 digits."""
     with pytest.raises(READERS[reader].errors, match=message):
         READERS[reader].read(data)
+
+
+def test_what_is_no_file_is_not_waited_for(tmp_path):
+    """A pipe that nobody writes to, in the place of a scene, its reference, a manifest, a film, a run: refused at once."""
+    for name in ("a.toml", "point-light.toml", "run.json"):
+        os.mkfifo(tmp_path / name)
+    for read, refused in (
+        (lambda: scene_file.read_cases(tmp_path / "a.toml"), SceneError),
+        (lambda: manifest.read(tmp_path / "a.toml"), SceneError),
+        (lambda: references.read(tmp_path, SCENE), ReferenceError),
+        (lambda: films.read(tmp_path / "a.toml"), FilmError),
+        (lambda: store.open(tmp_path), StoreError),
+    ):
+        with pytest.raises(refused):
+            read()

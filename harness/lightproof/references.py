@@ -7,14 +7,14 @@ digest, the engines and how far they agree, and for the scene its formula and ci
 from __future__ import annotations
 
 import csv
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from lightproof.checked import shown
+from lightproof import scene_file
+from lightproof.checked import SceneError, shown
 from lightproof.scene import Scene
 
 
@@ -78,16 +78,18 @@ def _read(path: Path, scene: Scene, about: dict[str, Any]) -> Reference:
 
 
 def _about(path: Path) -> dict[str, Any]:
+    if not path.exists():
+        raise ReferenceError(f"{path}: there is no reference for this scene; run 'lightproof certify {path.stem}'")
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise ReferenceError(f"{path}: there is no reference for this scene; run 'lightproof certify {path.stem}'") from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ReferenceError(f"{path}: cannot be read: {error}") from None
+        return scene_file.read_table(path, "reference")
+    except SceneError as error:
+        raise ReferenceError(f"{path}: {error}") from None
 
 
 def _values(path: Path, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     try:
+        if path.exists() and not path.is_file():
+            raise ValueError("it is no file")
         with path.open(encoding="utf-8", newline="") as lines:
             rows = [row for row in csv.DictReader(lines) if row["case"] == scene.case]
         elements = [int(row["element"]) for row in rows]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import MISSING, fields
@@ -15,6 +16,9 @@ from lightproof.scene import Scene
 
 BASE = "base"
 MAX_BYTES = 1 << 20
+MOST_PARTS = 32  # of a dotted key: tomllib takes minutes over thousands
+KEY_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+LONG_KEY = re.compile(rf"(?<![\w-]){KEY_PART}(?:[ \t]*+\.[ \t]*+{KEY_PART}){{{MOST_PARTS}}}")
 LIGHTS = {"area": scene.AreaLight, "point": scene.PointLight, "directional": scene.DirectionalLight}
 FILMS = {"plane": scene.PlaneFilm, "points": scene.PointsFilm, "camera": scene.CameraFilm}
 TOP = ("title", "tests", "tags", "max_bounces", "tolerance", "tolerance_scale", "light", "surface", "film")
@@ -50,14 +54,21 @@ def _read_case(table: dict[str, Any], name: str, case: str, changes: Any) -> Sce
 def read_table(path: Path, what: str) -> dict[str, Any]:
     """The table of a TOML file that is to hold a `what`, such as "scene". Raises SceneError where it is none, or too large."""
     try:
+        if path.exists() and not path.is_file():
+            raise SceneError("", f"is no file; give the path of a {what} file (.toml)")
         if path.stat().st_size > MAX_BYTES:
             raise SceneError("", f"the file is larger than {MAX_BYTES} bytes; a {what} is a small text")
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        if LONG_KEY.search(text):
+            raise SceneError("", f"holds a key of more than {MOST_PARTS} parts; no {what} has one")
+        return tomllib.loads(text)
+    except SceneError:
+        raise
     except OSError as error:
         raise SceneError("", f"cannot be read: {error.strerror}; give the path of a {what} file (.toml)") from None
     except UnicodeDecodeError as error:
         raise SceneError("", f"is not UTF-8 text (byte {error.start}); a {what} file is TOML") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise SceneError("", f"is not TOML: {error}") from None
 
 

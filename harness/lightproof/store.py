@@ -150,6 +150,8 @@ def check_writable(parent: Path) -> None:
 def open(folder: Path) -> Store:
     """The run in `folder`. Raises StoreError where there is none, or one of another format."""
     try:
+        if not (folder / "run.json").is_file():
+            raise ValueError("there is no file run.json")
         about = json.loads((folder / "run.json").read_bytes())
     except (OSError, ValueError, RecursionError):
         raise StoreError(f"{folder}: is no run of lightproof; give a folder that 'lightproof run' made") from None
