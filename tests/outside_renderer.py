@@ -93,7 +93,6 @@ def misbehave(fault: str, job: dict, answer: dict) -> None:
 ALTERED = {
     "garbage": lambda answer: "Rendering: 100 % done",
     "twice": lambda answer: f"{json.dumps(answer)}\n{json.dumps(answer)}",
-    "nan": lambda answer: {**answer, "film": [math.nan, *answer["film"][1:]]},
     "negative": lambda answer: {**answer, "film": [-1.0, *answer["film"][1:]]},
     "no-file": lambda answer: {**answer, "film": "file"},
 }
