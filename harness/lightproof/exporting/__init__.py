@@ -37,6 +37,7 @@ TOOLS = {
     "blender": Tool("lightproof.exporting.blender", ".blend"),
     "luxcore": Tool("lightproof.exporting.luxcore", ".cfg"),
     "pbrt": Tool("lightproof.exporting.pbrt", ".pbrt"),
+    "radiance": Tool("lightproof.exporting.radiance", ".rad"),
     "usd": Tool("lightproof.exporting.usd", ".usda"),
 }
 
