@@ -24,6 +24,17 @@ def test_percent(value, said):
     assert wording.percent(value) == said
 
 
+@pytest.mark.parametrize(("change", "said"), [
+    (2.4e-5, "of the error at most 0.0024 % comes from triangles"),
+    (0.0, "of the error at most 0 % comes from triangles"),
+    (3.0, "of the error at most all comes from triangles"),
+    (math.inf, "what triangles in the place of round shapes change is not known"),
+])
+def test_triangles(change, said):
+    """Fractions of the tolerance scale."""
+    assert wording.triangles(change) == said
+
+
 @pytest.mark.parametrize(("low", "high", "said"), [
     (-0.0002, 0.0004, "0.010 ± 0.030 %"),  # two digits of the half width
     (1.0300, 1.0310, "103.050 ± 0.050 %"),
