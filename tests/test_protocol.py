@@ -46,18 +46,23 @@ def described(folder: Path, mode: str = "lasting", fault: str = "none", more: st
     return path
 
 
+@pytest.fixture(scope="module")
+def pool():
+    """One for all tests, in which one worker asks all programs: what one does to it, the others have to live with."""
+    with Pool(threads=1, file_limit=1 << 22) as pool:
+        yield pool
+
+
 @pytest.fixture
-def render(tmp_path):
-    """Trials of one renderer, one after the other, in one pool."""
-    pool = Pool(threads=1, file_limit=1 << 22)
+def render(pool, tmp_path):
+    """A trial of the renderer that a manifest describes."""
 
     def render(path: Path, samples: int = 64, replicate: int = 0, scene: Scene = SCENE, timeout: float = 20.0) -> Result:
-        (entry,) = selection.methods([str(path)], [])
+        entry = replace(manifest.read(path).entry(path), worker="outside")
         trial = Trial(scene.id, scene.case, scene.digest, entry.name, samples, replicate)
         return pool.render(entry, scene, trial, tmp_path / "film.exr", timeout)
 
-    with pool:
-        yield render
+    return render
 
 
 @pytest.mark.parametrize("mode", ["once", "lasting"])
