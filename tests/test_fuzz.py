@@ -33,7 +33,7 @@ from lightproof.store import StoreError
 ROOT = suite.default().root
 SCENE = suite.default().scene("point-light")
 FOLDER = Path(tempfile.mkdtemp(prefix="lightproof-fuzz-"))
-EXAMPLES = 60
+EXAMPLES = 40
 
 MANIFEST = {
     "name": "my-renderer", "command": ["./render", "--quiet"], "version": ["./render", "--version"], "mode": "lasting",

@@ -16,7 +16,7 @@ from test_process import TARGET
 from lightproof import store, suite
 from lightproof.trial import Result
 
-PLAN = ("--budget", "600", "--cell-budget", "300", "--threads", "1", "--with", f"{TARGET}/slow", TARGET)
+PLAN = ("--budget", "600", "--cell-budget", "300", "--threads", "1", "--with", f"{TARGET}/slow")
 
 
 def make_suite(folder: Path) -> Path:

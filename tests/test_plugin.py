@@ -13,6 +13,7 @@ import pytest
 from lightproof import api, store, suite
 from lightproof.checking import check
 from lightproof.cli import main
+from lightproof.films import FilmError
 from lightproof.method import Rendering
 from lightproof.renderers.function import Function
 from lightproof.scene import Scene
@@ -69,16 +70,8 @@ def forgets_the_seed(scene: Scene, samples: int) -> np.ndarray:
     return exact(scene, samples, 0)
 
 
-def forgets_to_return(scene: Scene, samples: int, seed: int) -> None:
-    exact(scene, samples, seed)
-
-
 def transposed(scene: Scene, samples: int, seed: int) -> np.ndarray:
     return exact(scene, samples, seed).T
-
-
-def speechless(scene: Scene, samples: int, seed: int) -> str:
-    return "light"
 
 
 def crashes(scene: Scene, samples: int, seed: int) -> None:
@@ -102,11 +95,9 @@ def test_what_is_right_passes():
 
 @pytest.mark.parametrize(("renderer", "message"), [
     (too_bright, r"test_plugin:too_bright on point-light: fail: .* is off by .*pi"),
-    (noisy, r"undecided: .*; [\d,]+ samples would decide \(it had 60 s and at most 256 samples\)"),
+    (noisy, r"undecided: .*; [\d,]+ samples would decide \(it had 300 s and at most 256 samples\)"),
     (forgets_the_seed, r"takes \(scene: .*\) -> .*, but is called with \(scene, samples, seed\): too many positional"),
-    (forgets_to_return, r"the film is None: does the function return it\? It must be an array of shape \(192,\)"),
     (transposed, r"the film has shape \(16, 12\); it must be an array of shape \(192,\), row by row, or \(12, 16\)"),
-    (speechless, r"the film is 'light', which holds no numbers"),
     (crashes, r"killed by SIGSEGV"),
     (stumbles, r"ZeroDivisionError: no light at all \(test_plugin\.py, line \d+\)"),
     ("riemann-hemisphere", r"riemann-hemisphere on point-light: unsupported: "),
@@ -128,6 +119,20 @@ def test_what_cannot_be_judged_is_no_verdict(judged, options, message):
     """A mistake in the test itself: a ValueError that says what would be right."""
     with pytest.raises(ValueError, match=message):
         check(judged, "point-light", **options)
+
+
+@pytest.mark.parametrize(("film", "message"), [
+    (None, r"the film is None: does the function return it\? It must be an array of shape \(192,\)"),
+    ("light", "the film is 'light', which holds no numbers"),
+    (np.ones((192, 1)), r"the film has shape \(192, 1\)"),
+    (Rendering(np.ones(192), 64, variance=np.ones(3)), r"the variance has shape \(3,\)"),
+])
+def test_what_is_no_film_says_so(film, message):
+    """Nothing returned, a word, a column, a variance of another film."""
+    method = Function(lambda scene, samples, seed: film, "mine", threads=1)
+    method.prepare(SCENE)
+    with pytest.raises(FilmError, match=message):
+        method.render(64, 1)
 
 
 def test_what_a_function_says_of_its_noise_is_kept():

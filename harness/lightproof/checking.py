@@ -25,7 +25,7 @@ from lightproof.verdict import Outcome, Verdict
 REPLICATES = 16
 
 
-def check(judged: Any, scene: Scene | str, samples: int = MOST_SAMPLES, budget: float = 60.0) -> Verdict:
+def check(judged: Any, scene: Scene | str, samples: int = MOST_SAMPLES, budget: float = 300.0) -> Verdict:
     """Assert that the light of a scene is right; returns the verdict where it is.
 
     `judged` is the name of a method; a function (scene, samples, seed) -> film or a class of methods, from the top level of a
@@ -37,7 +37,8 @@ def check(judged: Any, scene: Scene | str, samples: int = MOST_SAMPLES, budget: 
     found, home = api.found(scene)
     if callable(judged) or isinstance(judged, str):
         entry = _entry(judged)
-        name, effort = entry.name, f" (it had {budget:g} s and at most {samples:,} samples)"
+        limit = f" and at most {samples:,} samples" if samples < MOST_SAMPLES else ""
+        name, effort = entry.name, f" (it had {budget:g} s{limit})"
         verdict = _render(entry, found, home, samples, budget)
     else:
         name, effort = "the film", ""
