@@ -37,6 +37,7 @@ def write(path: Path, grid: tuple[int, int], channels: Mapping[str, np.ndarray],
     partial.rename(path)
 
 
+@np.errstate(invalid="ignore")
 def read(path: Path, channel: str = "") -> tuple[tuple[int, int], dict[str, np.ndarray], dict[str, str]]:
     """Grid (rows, columns), channels as (n,) float64 and the header's strings, of a film or of anybody's picture.
 

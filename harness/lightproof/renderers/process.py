@@ -24,7 +24,7 @@ BOOTSTRAP = Path(__file__).with_name("bootstrap.py")
 MARK = "LIGHTPROOF_WORKER"
 LARGEST_FILE = 1 << 29
 LONGEST_ANSWER = 1 << 20
-MOST_CHILDREN = 16
+CHILDREN_PER_THREAD = 4
 POLL = 0.2
 QUOTED_LINES = 3
 SILENCE = "; it wrote nothing"
@@ -63,6 +63,7 @@ class Worker:
         self._scratch = tempfile.TemporaryDirectory(prefix="lightproof-", ignore_cleanup_errors=True)
         self._buffer = b""
         self._asked = 0
+        self._most_children = CHILDREN_PER_THREAD * (threads + 4)
         requests, self._requests = os.pipe()
         self._answers, answers = os.pipe()
         command = [python or sys.executable, "-u", str(BOOTSTRAP)]
@@ -164,7 +165,7 @@ class Worker:
         """Whether the worker has left more processes behind than a renderer needs; unknown but on Linux."""
         with contextlib.suppress(OSError):
             lists = Path(f"/proc/{self._process.pid}/task").glob("*/children")
-            return sum(len(each.read_text().split()) for each in lists) > MOST_CHILDREN
+            return sum(len(each.read_text().split()) for each in lists) > self._most_children
         return False
 
     def close(self) -> None:
