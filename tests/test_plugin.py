@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 import subprocess
 import sys
@@ -158,6 +159,30 @@ def test_names_that_a_terminal_would_obey_are_shown_as_text(tmp_path, capsys):
     printed = capsys.readouterr()
     assert "\x1b" not in printed.out + printed.err
     assert store.latest(tmp_path / "runs").run.versions["[2Jmine:render"] == "[31m[red]1.0"
+
+
+def test_a_renderer_of_several_files(tmp_path, monkeypatch):
+    """A file that defines a dataclass and imports the file beside it, and one in a package that imports from the package."""
+    (tmp_path / "brightness.py").write_text("FACTOR = 1.0\n")
+    (tmp_path / "shiny.py").write_text("""from __future__ import annotations
+from dataclasses import dataclass
+import brightness
+from test_plugin import exact
+
+@dataclass
+class Settings:
+    factor: float = brightness.FACTOR
+
+def render(scene, samples, seed):
+    return Settings().factor * exact(scene, samples, seed)
+""")
+    (tmp_path / "package").mkdir()
+    (tmp_path / "package/__init__.py").touch()
+    (tmp_path / "package/inner.py").write_text("from . import shiny\n\ndef render(*job):\n    return shiny.render(*job)\n")
+    (tmp_path / "package/shiny.py").write_text("from shiny import render\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in ("shiny", "package.inner"):
+        assert check(importlib.import_module(name).render, "point-light").outcome == "pass"
 
 
 def test_two_files_of_one_name_are_told_apart(tmp_path, capsys):
