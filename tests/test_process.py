@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -162,6 +163,14 @@ def test_a_closed_worker_can_be_closed_again():
     with pytest.raises(WorkerTimeout):
         worker.ask("open", timeout=0.0, method="hangs", target=TARGET, threads=1)
     worker.close()
+
+
+def test_a_worker_that_does_not_read_is_not_waited_for():
+    """A worker that was stopped, and a request larger than a pipe holds: no answer in time."""
+    worker = Worker(threads=1)
+    worker._process.send_signal(signal.SIGSTOP)
+    with pytest.raises(WorkerTimeout):
+        worker.ask("prepare", timeout=0.2, method="any", table={"title": "long " * 100_000})
 
 
 def test_phases_add_up_to_the_clock():

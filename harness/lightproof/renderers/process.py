@@ -94,14 +94,11 @@ class Worker:
         try:
             self._send(json.dumps({"id": self._asked, "op": op, **arguments}).encode() + b"\n", deadline)
             return self._answer(deadline)
-        except WorkerTimeout:
-            words = self.last_words()
-            self.close()
-            raise WorkerTimeout(f"no answer within {timeout:.3g} s{words or SILENCE}") from None
         except WorkerDied as error:
-            words = self.last_words()
+            problem = f"no answer within {timeout:.3g} s" if isinstance(error, WorkerTimeout) else error
+            words = self.last_words() or SILENCE
             self.close()
-            raise WorkerDied(f"{error}{words or SILENCE}") from None
+            raise type(error)(f"{problem}{words}") from None
 
     def _send(self, line: bytes, deadline: float) -> None:
         """Write a request; a worker that does not read has until the deadline, one that has ended is told of by its answer."""
