@@ -121,7 +121,8 @@ def test_a_blocker_is_bounded_by_all_of_its_ribbon():
     ("sphere-furnace", 0),  # the same light everywhere, whatever the wall's shape
     ("sphere-furnace:irradiance", 0),
     ("off-centre-point-in-sphere", np.inf),  # reflections
-    ("point-light-shadow:round", np.inf),  # shadows of a point
+    ("point-light-shadow:round", 0),  # no point of the film lies at a shadow's edge
+    ("centred-point-in-sphere:direct", np.inf),  # inside
     ("white-furnace-sphere", np.inf),  # a camera
 ])
 def test_what_is_known_without_any_ribbon(scene, expected):
@@ -140,6 +141,28 @@ def test_the_triangles_of_ours_change_little(scene):
     change = tessellation.difference(scene, tessellation.meshes(scene))
     assert change.shape == (scene.size,)
     assert 0 < change.max() < 0.05 * scene.tolerance * SUITE.reference(scene).value.max()
+
+
+TILTED, LYING = Disk((0.3, -0.1, 1.4), (0.2, -0.1, -1), 0.31), Cylinder((0.38, -0.34, 1.35), (-0.31, 0.95, 0.2), 0.5, 0.2)
+
+
+@pytest.mark.parametrize("shape", [BALL, TILTED, LYING])
+def test_shadows_of_points_and_beams_change_at_their_edge_alone(shape):
+    """A bulb and a beam behind each round shape, and points of a floor along a line out of its shadow: with coarse triangles
+    some points may lose or gain the light, those in the shadow of a shape as large as the triangles and not of one as small;
+    with ours at most one may."""
+    places = np.array([0.3, -0.1, 0]) + np.linspace(0, 1.5, 120)[:, None] * [0.95, 0.31, 0]
+    film = {"kind": "points", "quantity": "irradiance", "positions": places.tolist(), "normals": [[0, 0, 1]] * 120}
+    bulb = {"id": "bulb", "kind": "point", "position": [0.3, -0.1, 2.6], "intensity": 2.9}
+    beam = {"id": "beam", "kind": "directional", "direction": [0.1, 0, -1], "irradiance": 5.7}
+    blocker = {"id": "blocker", "shape": shape.to_table(), "reflectance": 0}
+    build = {Sphere: lambda: globe(shape, 6), Disk: lambda: fan(shape, 7), Cylinder: lambda: prism(shape, 7)}[type(shape)]
+    for lamp, most in ((bulb, 2.9 / 2.6**2), (beam, 5.7 / np.hypot(1, 0.1))):
+        table = {"title": "Shadow", "max_bounces": 0, "tolerance": 0.01, "light": [lamp], "surface": [blocker], "film": film}
+        scene = scene_file.from_table(table, "shadow")
+        coarse = tessellation.difference(scene, {"blocker": build()})
+        assert 0 < (coarse > 0).sum() < 40 and coarse.max() <= most * (1 + 1e-12)
+        assert (tessellation.difference(scene, tessellation.meshes(scene)) > 0).sum() <= 1
 
 
 def test_native_shapes_are_no_triangles():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +12,11 @@ from lightproof.geometry import Polygon, Sphere
 from lightproof.renderers import mesh
 from lightproof.renderers.mesh import Mesh
 from lightproof.renderers.ribbons import ROUND, Outlines
+from lightproof.renderers.sight import hides
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, OvercastSky, PlaneFilm, PointLight, Scene, Surface
+
+AFAR = 1e9  # m: where a beam comes from
+DEEPEST = 2  # of an outline's width: the middles of triangles lie no deeper
 
 
 def meshes(scene: Scene, native: Container[str] = ()) -> dict[str, Mesh]:
@@ -22,8 +27,8 @@ def meshes(scene: Scene, native: Container[str] = ()) -> dict[str, Mesh]:
 
 def difference(scene: Scene, meshes: Mapping[str, Mesh]) -> np.ndarray | None:
     """Largest difference (n,) [unit of the film] that `meshes` make which stand for round shapes, by the ids of these; None where
-    there are none, infinite where it is not known: after reflections, before a camera, in the shadows of points and beams,
-    too near a shape.
+    there are none, infinite where it is not known: after reflections, before a camera, where points and beams cast shadows on
+    a plane, too near a shape.
 
     A light on its own differs by the very light of the ribbon between its outline and that of its triangles. Where things
     hide each other, what is bounded is the light of the ribbons: none is brighter there than the brightest thing in the
@@ -43,7 +48,27 @@ def difference(scene: Scene, meshes: Mapping[str, Mesh]) -> np.ndarray | None:
 def _at(scene: Scene, outlines: Mapping[AreaLight | Surface, Outlines], point: np.ndarray, normal: np.ndarray) -> float:
     alone = len(scene.lights) + len(scene.surfaces) == 1
     brightest = max(_radiance(thing) for thing in (*scene.lights, *scene.surfaces))
-    return brightest * sum(_projected(each, point, normal, alone) for each in outlines.values())
+    seen = brightest * sum(_projected(each, point, normal, alone) for each in outlines.values()) if brightest else 0.0
+    casting = [light for light in scene.lights if isinstance(light, PointLight | DirectionalLight)]
+    return seen + sum(_cast(light, list(outlines.values()), point, normal) for light in casting)
+
+
+def _cast(light: PointLight | DirectionalLight, outlines: list[Outlines], point: np.ndarray, normal: np.ndarray) -> float:
+    """Irradiance [W/m2] of a light without size, where a shape hides it that is as small as its triangles somewhere are, or as
+    large, and not both; else 0."""
+    if isinstance(light, PointLight):
+        way = np.array(light.position) - point
+        value = light.intensity / float(way @ way)
+    else:
+        way, value = -AFAR * geometry.unit(light.direction), light.irradiance
+    differs = any(len({hides(shape, point, point + way) for shape in _extremes(each)}) > 1 for each in outlines)
+    return value * max(0.0, float(geometry.unit(way) @ normal)) if differs else 0.0
+
+
+def _extremes(outlines: Outlines) -> list[ROUND]:
+    """The shape as small and as large as its triangles are anywhere."""
+    shape, depth = outlines.shape, DEEPEST * outlines.width
+    return [replace(shape, radius=radius) for radius in (shape.radius - depth, shape.radius + depth)]
 
 
 def _projected(outlines: Outlines, point: np.ndarray, normal: np.ndarray, alone: bool) -> float:
@@ -63,9 +88,9 @@ def _things(scene: Scene) -> list[AreaLight | Surface]:
 
 
 def _is_plain(scene: Scene) -> bool:
-    """Whether all light comes straight from something that has a size, to a film that is lit by it."""
-    from_nowhere = any(isinstance(light, PointLight | DirectionalLight) for light in scene.lights)
-    return not (scene.reflects or from_nowhere or isinstance(scene.film, CameraFilm))
+    """Whether all light comes straight to a film that is lit by it, and casts soft shadows unless the film has no cells."""
+    hard = isinstance(scene.film, PlaneFilm) and any(isinstance(light, PointLight | DirectionalLight) for light in scene.lights)
+    return not (scene.reflects or hard or isinstance(scene.film, CameraFilm))
 
 
 def _is_outside(thing: AreaLight | Surface) -> bool:
