@@ -11,6 +11,7 @@ import math
 import tempfile
 import time
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,9 @@ AT_ONCE = 1 << 18  # rays made at a time
 EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-dj", "1", "-st", "1", "-lw", "0"]
 """No shadow ray is left out, lamps are sampled all over, no path is cut by its weight."""
 CACHED = ["-aa", "0.1", "-ar", "64", "-ad", "512", "-lw", "1e-4"]
+
+SEQUENCE, RANDOM = "-u-", "-u+"
+PERIOD = 2048  # numbers of the sequence, one of them for each ray and light
 
 CACHE, NATIVE, QUASI_RANDOM = "ambient-cache", "native-lamps", "quasi-random"
 CAVEATS = {
@@ -77,8 +81,8 @@ class Radiance(Method):
         start = time.perf_counter()
         self.film, self.planned = scene.film, self._plan(scene)
         self.strata = 1 if self.option == CACHE else strata(scene, self.planned)
-        sequence = "-u-" if self.option == QUASI_RANDOM else "-u+"
-        self.options = options(scene, self.planned, self.strata, self.option == CACHE, sequence)
+        self.options = [*options(scene, self.planned, self.strata, self.option == CACHE), self._sequence()]
+        self.skips = self.options[-1] == SEQUENCE and self.option != QUASI_RANDOM
         place = Path(self.folder.name)
         (place / SHAPES).write_text(radiance_scene.SHAPES)
         (place / SCENE).write_text(radiance_scene.describe(scene, self.planned, SHAPES))
@@ -90,25 +94,31 @@ class Radiance(Method):
     def render(self, samples: int, seed: int) -> Rendering:
         if self.option == CACHE:
             self._start()
-        generator = np.random.default_rng(seed)
         points = math.ceil(samples / self.strata)
         passes = math.ceil(points * math.prod(self.film.grid) / AT_ONCE)
         each = math.prod(radiance_rays.strata(math.ceil(points / passes)))
+        generator = np.random.default_rng(seed)
         film = np.mean([self._pass(each, generator) for _ in range(passes)], axis=0)
         return Rendering(film, samples=passes * each * self.strata)
 
+    def _pass(self, count: int, generator: np.random.Generator) -> np.ndarray:
+        skipped = partial(generator.integers, PERIOD) if self.skips else int
+        values = self.rtraces.trace(radiance_rays.rays(self.film, count, generator), skipped)
+        return values.reshape(-1, count).mean(axis=1)
+
     def _plan(self, scene: Scene) -> Transport:
         return radiance_transport.transport_of(scene, self.option == NATIVE)
+
+    def _sequence(self) -> str:
+        """Radiance's own sequence of random numbers has less noise, and begun anywhere it is right on the mean over lamps; over
+        the hemisphere it is not."""
+        return SEQUENCE if self.option == QUASI_RANDOM or not self.planned.bounces else RANDOM
 
     def _start(self) -> None:
         """New processes, with empty caches."""
         if self.rtraces:
             self.rtraces.close()
         self.rtraces = self.programs.rtraces(self.options, self.octree, self.threads)
-
-    def _pass(self, count: int, generator: np.random.Generator) -> np.ndarray:
-        values = self.rtraces.trace(radiance_rays.rays(self.film, count, generator))
-        return values.reshape(-1, count).mean(axis=1)
 
 
 def strata(scene: Scene, planned: Transport) -> int:
@@ -123,10 +133,10 @@ def strata(scene: Scene, planned: Transport) -> int:
     return STRATA if lamps and looks and not each else 1
 
 
-def options(scene: Scene, planned: Transport, parts: int, cache: bool, sequence: str) -> list[str]:
+def options(scene: Scene, planned: Transport, parts: int, cache: bool) -> list[str]:
     """Of rtrace: as many bounces as count; a lamp or the hemisphere in `parts`; indirect light from a `cache` or not."""
     lamps = ["-ds", "0" if planned.bounces or parts == 1 else "1e-4"]
     around = ["-ab", str(planned.bounces), "-lr", str(planned.bounces + 1), "-as", "0"]
     stored = CACHED if cache else ["-aa", "0", "-ad", str(parts if planned.bounces else 1)]
     irradiance = [] if isinstance(scene.film, CameraFilm) else ["-I+"]
-    return [*EXACT, *lamps, *around, *stored, *irradiance, sequence]
+    return [*EXACT, *lamps, *around, *stored, *irradiance]

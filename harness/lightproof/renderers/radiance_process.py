@@ -53,13 +53,14 @@ class Rtraces:
             time.sleep(0.01)
         self._join()
 
-    def trace(self, rays: np.ndarray) -> np.ndarray:
-        """The first channel of what arrives along rays (n, 6), as (n,). Raises RadianceFailed."""
+    def trace(self, rays: np.ndarray, skipped: Callable[[], int] = lambda: 0) -> np.ndarray:
+        """The first channel of what arrives along rays (n, 6), as (n,); each process first skips `skipped()` rays. Raises
+        RadianceFailed."""
         if len(self._running) < self._most and int(time.time()) > Rtraces.second:
             self._join()
         with ThreadPoolExecutor(len(self._running)) as threads:
             shares = np.array_split(rays, len(self._running))
-            return np.concatenate([*threads.map(Rtrace.trace, self._running, shares)])
+            return np.concatenate([*threads.map(Rtrace.trace, self._running, shares, [skipped() for _ in shares])])
 
     def close(self) -> None:
         """End the processes."""
@@ -81,9 +82,10 @@ class Rtrace:
             self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, env=environment)
         self.trace(np.eye(6)[-1:])  # any ray: when it is answered, the stream of random numbers has begun
 
-    def trace(self, rays: np.ndarray) -> np.ndarray:
-        """As `Rtraces.trace`."""
-        return np.concatenate([self._answer(rays[i : i + BLOCK]) for i in range(0, max(len(rays), 1), BLOCK)])
+    def trace(self, rays: np.ndarray, skipped: int = 0) -> np.ndarray:
+        """As `Rtraces.trace`; what is skipped is the first ray turned round, which costs little."""
+        rays = np.vstack([np.tile(rays[:1] * [1, 1, 1, -1, -1, -1], (skipped, 1)), rays])
+        return np.concatenate([self._answer(rays[i : i + BLOCK]) for i in range(0, max(len(rays), 1), BLOCK)])[skipped:]
 
     def close(self) -> None:
         """End the process."""
