@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from lightproof import geometry
-from lightproof.geometry import Polygon, Sphere
+from lightproof.geometry import Cylinder, Polygon, Sphere
 from lightproof.renderers import mesh
 from lightproof.renderers.mesh import Mesh
 from lightproof.renderers.ribbons import ROUND, Outlines
@@ -28,7 +28,7 @@ def meshes(scene: Scene, native: Container[str] = ()) -> dict[str, Mesh]:
 def difference(scene: Scene, meshes: Mapping[str, Mesh]) -> np.ndarray | None:
     """Largest difference (n,) [unit of the film] that `meshes` make which stand for round shapes, by the ids of these; None where
     there are none, infinite where it is not known: after reflections, before a camera, where points and beams cast shadows on
-    a plane, too near a shape.
+    a plane, behind open tubes, too near a shape.
 
     A light on its own differs by the very light of the ribbon between its outline and that of its triangles. Where things
     hide each other, what is bounded is the light of the ribbons: none is brighter there than the brightest thing in the
@@ -73,11 +73,11 @@ def _extremes(outlines: Outlines) -> list[ROUND]:
 
 def _projected(outlines: Outlines, point: np.ndarray, normal: np.ndarray, alone: bool) -> float:
     """Projected solid angle [sr] by which a shape and its triangles differ: of a light that is alone what they make in sum, else
-    all that is not the same."""
+    all that is not the same; infinite too near, and of an open tube that hides things, whose back is no part of its ribbon."""
     if alone and not outlines.faces(point):
         return 0.0
     ribbon = outlines.ribbon(point)
-    if ribbon is None:
+    if ribbon is None or (isinstance(outlines.shape, Cylinder) and not alone):
         return np.inf
     pieces = np.maximum(ribbon.directions @ normal, 0) * ribbon.solid_angles
     return float(abs(pieces.sum()) if alone else np.abs(pieces).sum())
