@@ -17,7 +17,7 @@ from lightproof.trial import Result, Status
 NO_LIGHT = "every value must be finite and zero or more"
 TOO_LARGE = "OSError: [Errno 27] File too large: no file and no output may have more than 1,048,576 bytes"
 
-# What is wrong -> what the record says, while starting, preparing or rendering. A crash is tried once more; the rest is not.
+# What is wrong -> what the record says, while starting, preparing or rendering. TRIED_AGAIN: a crash, once.
 FAULTS = {
     "exits-at-once": "while starting the renderer: its process exited with status 7 before it answered; it wrote nothing",
     "raises-while-preparing": "while preparing the scene: RuntimeError: the scene is too beautiful (misbehaving.py, line ",
@@ -43,6 +43,8 @@ FAULTS = {
     "counts-backwards": "the film has -64 samples; it must be those spent per element, 1 or more",
     "two-dimensional": "the film's Y has shape (12, 16); it must be (192,), row by row",
 }
+TRIED_AGAIN = ("exits-mid-job", "calls-exit", "segfaults", "killed", "dies-of-an-odd-signal", "speaks-nonsense", "drones-on",
+               "closes-pipe")
 TIME_OUTS = {
     "hangs": "while rendering: no answer within 0.3 s; it last wrote: thinking about it",
     "hangs-after": "while rendering: no answer within 0.3 s; it last wrote: thinking about it",
@@ -102,6 +104,7 @@ def test_a_fault_costs_its_own_trial(pool, tmp_path, fault):
     assert FAULTS[fault] in faulty.message
     assert faulty.message.isprintable()
     assert not list(tmp_path.glob("*.partial"))
+    assert ("(at the second attempt too)" in faulty.message) == (fault in TRIED_AGAIN)
 
 
 @pytest.mark.parametrize("fault", TIME_OUTS)

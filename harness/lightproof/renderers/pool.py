@@ -95,12 +95,12 @@ class Pool:
 
     def render(self, entry: Entry, scene: Scene, trial: Trial, film: Path, timeout: float) -> Result:
         """The result of one trial, its film written to the path `film`. Never raises on a renderer's fault: a worker that
-        dies is replaced and the trial tried once more; one that hangs for `timeout` [s] is not."""
+        dies is replaced and the trial tried once more; one that hangs for `timeout` [s], or dies as it starts, is not."""
         try:
             return self._attempt(entry, scene, trial, film, timeout)
-        except WorkerTimeout as error:
-            return self._failed(trial, str(error))
         except WorkerDied as error:
+            if isinstance(error, WorkerTimeout) or entry.name in self._unable:
+                return self._failed(trial, str(error))
             return self._second_attempt(entry, scene, trial, film, timeout, first=str(error))
 
     def _second_attempt(self, entry: Entry, scene: Scene, trial: Trial, film: Path, timeout: float, first: str) -> Result:
