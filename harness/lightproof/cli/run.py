@@ -44,7 +44,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--seed", type=count(0), default=0, metavar="N", help="another seed, other noise (default: %(default)s)")
     add("--out", type=Path, default=RUNS, metavar="DIR", help="where the run's folder is made (default: %(default)s)")
     add("--suite", type=Path, metavar="DIR", help="a folder with scenes/ and references/ (default: Lightproof's own)")
-    add("--resume", type=Path, metavar="RUN", help="carry on with the run in this folder")
+    add("--resume", type=Path, metavar="RUN",
+        help="carry on with the run in this folder, which is one of your own: it names the code that runs")
     add("--strict", action="store_true", help="exit 1 where a verdict is fail, 3 where one is undecided")
 
 
