@@ -17,7 +17,7 @@ from lightproof.trial import Result, Status
 NO_LIGHT = "every value must be finite and zero or more"
 TOO_LARGE = "OSError: [Errno 27] File too large: no file and no output may have more than 1,048,576 bytes"
 
-# What is wrong -> what the record says, while starting, preparing or rendering. TRIED_AGAIN: a crash, once.
+# What is wrong -> what the record says, while starting, preparing or rendering. Crashes (TRIED_AGAIN) are tried once more.
 FAULTS = {
     "exits-at-once": "while starting the renderer: its process exited with status 7 before it answered; it wrote nothing",
     "raises-while-preparing": "while preparing the scene: RuntimeError: the scene is too beautiful (misbehaving.py, line ",
@@ -46,10 +46,10 @@ FAULTS = {
 TRIED_AGAIN = ("exits-mid-job", "calls-exit", "segfaults", "killed", "dies-of-an-odd-signal", "speaks-nonsense", "drones-on",
                "closes-pipe")
 TIME_OUTS = {
-    "hangs": "while rendering: no answer within 0.3 s; it last wrote: thinking about it",
-    "hangs-after": "while rendering: no answer within 0.3 s; it last wrote: thinking about it",
-    "ignores-sigterm": "while rendering: no answer within 0.3 s; it last wrote: thinking about it",
-    "stops": "while rendering: no answer within 0.3 s; it last wrote: the end is near",
+    "hangs": "while rendering: no answer within 0.5 s; it last wrote: thinking about it",
+    "hangs-after": "while rendering: no answer within 0.5 s; it last wrote: thinking about it",
+    "ignores-sigterm": "while rendering: no answer within 0.5 s; it last wrote: thinking about it",
+    "stops": "while rendering: no answer within 0.5 s; it last wrote: the end is near",
 }
 OUTSIDE = {  # beside the faults of tests/test_protocol.py
     "exits-at-once": ("lasting", "it exited with status 1 before it answered; it last wrote: no licence"),
@@ -112,7 +112,7 @@ def test_a_renderer_that_hangs_is_killed(pool, tmp_path, fault):
     """No answer in time: killed for good, even where it ignores a polite signal, not tried again, and replaced."""
     render(pool, tmp_path)
     process = psutil.Process(pool._workers["shared"]._process.pid)
-    faulty = render(pool, tmp_path, fault, timeout=0.3)
+    faulty = render(pool, tmp_path, fault, timeout=0.5)
     assert (faulty.status, faulty.message) == (Status.ERROR, TIME_OUTS[fault])
     assert not process.is_running()
     assert is_right(render(pool, tmp_path, replicate=1))
