@@ -85,16 +85,18 @@ class LuxCore(Method):
         return {"setup": time.perf_counter() - start}
 
     def render(self, samples: int, seed: int) -> Rendering:
-        block = _block(self.views[0])
-        per_pixel = math.ceil(samples / block**2)
+        per_pixel = math.ceil(samples / _block(self.views[0]) ** 2)
         passes = math.ceil(per_pixel / PASS)
-        seeds = np.random.SeedSequence(seed).generate_state(passes * len(self.views)).reshape(-1, passes) // 2 + 1
-        drawn = [[self._image(view, scene, math.ceil(per_pixel / passes), each) for each in row]
+        seeds = np.random.SeedSequence(seed).generate_state(passes * len(self.views)).reshape(-1, passes) >> 1 | 1
+        drawn = [self._film(view, scene, math.ceil(per_pixel / passes), row)
                  for view, scene, row in zip(self.views, self.scenes, seeds, strict=True)]
-        film = [view.elements(views.pooled(np.mean([image for image, _ in images], axis=0), block))
-                for view, images in zip(self.views, drawn, strict=True)]
-        taken = np.mean([count for images in drawn for _, count in images])
-        return Rendering(np.concatenate(film), samples=round(taken * passes * block**2))
+        films, taken = zip(*drawn, strict=True)
+        return Rendering(np.concatenate(films), samples=round(np.mean(taken)))
+
+    def _film(self, view: View, scene: Any, samples: int, seeds: np.ndarray) -> tuple[np.ndarray, float]:
+        """Film elements (n,) from one pass of `samples` a pixel for each seed, and the samples that an element really has."""
+        images, taken = zip(*(self._image(view, scene, samples, seed) for seed in seeds), strict=True)
+        return view.elements(views.pooled(np.mean(images, axis=0), _block(view))), _block(view) ** 2 * sum(taken)
 
     def _scene(self, *stages: Stage) -> Any:
         made = self.lux.Scene()
