@@ -38,8 +38,8 @@ CAVEATS = {
     CACHE: "Radiance's ambient cache interpolates indirect light between points, which no number of samples makes exact.",
     NATIVE: "Radiance samples a lamp that is no parallelogram as a square of its area, a round one as a box inside it: light is"
             " off by several per cent however many samples.",
-    QUASI_RANDOM: "Radiance's own order of random numbers is a fixed sequence of 2,048: cells in penumbrae settle a few"
-                  " thousandths of the brightest away from the truth.",
+    QUASI_RANDOM: "Radiance's own order of random numbers is a fixed sequence of 2,048 that begins anew with each picture:"
+                  " cells in penumbrae stay some thousandths of the brightest off, under half a sky some per cents.",
 }
 
 
@@ -92,7 +92,7 @@ class Radiance(Method):
         return {"setup": time.perf_counter() - start}
 
     def render(self, samples: int, seed: int) -> Rendering:
-        if self.option == CACHE:
+        if self.option in (CACHE, QUASI_RANDOM):
             self._start()
         points = math.ceil(samples / self.strata)
         passes = math.ceil(points * math.prod(self.film.grid) / AT_ONCE)
@@ -115,7 +115,7 @@ class Radiance(Method):
         return SEQUENCE if self.option == QUASI_RANDOM or not self.planned.bounces else RANDOM
 
     def _start(self) -> None:
-        """New processes, with empty caches."""
+        """New processes, with empty caches and at the start of their sequences."""
         if self.rtraces:
             self.rtraces.close()
         self.rtraces = self.programs.rtraces(self.options, self.octree, self.threads)

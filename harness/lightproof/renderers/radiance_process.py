@@ -36,27 +36,28 @@ class Programs:
     def rtraces(self, options: Sequence[str], octree: Path, most: int) -> Rtraces:
         """Running rtraces, `most` of them in the end."""
         command = [str(self.bin / "rtrace"), "-h-", "-fdd", *options, str(octree)]
-        return Rtraces(lambda: Rtrace(command, self.environment, self.said), most)
+        return Rtraces(lambda: Rtrace(command, self.environment, self.said), most, by_clock="-u+" in options)
 
 
 class Rtraces:
-    """Several rtrace processes that share the rays. Each starts its stream of random numbers from the clock's second, so no two
-    may start in the same one: the first waits for a new second, the others join when one has come."""
+    """Several rtrace processes that share the rays. With `by_clock` each starts its stream of random numbers from the clock's
+    second, so no two may start in the same one: the first waits for a new second, the others join when one has come."""
 
     second = 0
 
-    def __init__(self, start: Callable[[], Rtrace], most: int):
+    def __init__(self, start: Callable[[], Rtrace], most: int, by_clock: bool):
         self._start = start
         self._most = most
+        self._by_clock = by_clock
         self._running: list[Rtrace] = []
-        while int(time.time()) <= Rtraces.second:
+        while by_clock and not self._new_second():
             time.sleep(0.01)
         self._join()
 
     def trace(self, rays: np.ndarray, skipped: Callable[[], int] = lambda: 0) -> np.ndarray:
         """The first channel of what arrives along rays (n, 6), as (n,); each process first skips `skipped()` rays. Raises
         RadianceFailed."""
-        if len(self._running) < self._most and int(time.time()) > Rtraces.second:
+        while len(self._running) < self._most and (not self._by_clock or self._new_second()):
             self._join()
         with ThreadPoolExecutor(len(self._running)) as threads:
             shares = np.array_split(rays, len(self._running))
@@ -66,6 +67,10 @@ class Rtraces:
         """End the processes."""
         for rtrace in self._running:
             rtrace.close()
+
+    @staticmethod
+    def _new_second() -> bool:
+        return int(time.time()) > Rtraces.second
 
     def _join(self) -> None:
         self._running.append(self._start())
