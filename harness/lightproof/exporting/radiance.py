@@ -41,7 +41,8 @@ def commands(scene: Scene, view: View, path: Path) -> list[str]:
     """What to type in the folder of the files."""
     planned, (columns, rows) = radiance_transport.transport_of(scene), view.resolution
     options = radiance.options(scene, planned, radiance.strata(scene, planned), cache=False)
-    picture = " ".join([PIXELS, radiance.RANDOM, *(option for option in options if option != "-I+"), f"-x {FINE * columns} -y {FINE * rows}"])
+    size = f"-x {FINE * columns} -y {FINE * rows}"
+    picture = " ".join([PIXELS, radiance.RANDOM, *(option for option in options if option != "-I+"), size])
     return [f"Render: oconv {path.name} > {path.stem}.oct",
             f"Render: rpict -vf {path.stem}.vf {picture} {path.stem}.oct | pfilt -1 -x /{FINE} -y /{FINE} > {path.stem}.hdr"]
 
