@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+FAR = 1e9  # m
 BLOCK = 2048  # rays at a time: their answers fit into a pipe, so that neither side waits for the other for ever
 
 
@@ -85,11 +86,12 @@ class Rtrace:
         pipe = subprocess.PIPE
         with said.open("wb") as errors:
             self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, env=environment)
-        self.trace(np.eye(6)[-1:])  # any ray: when it is answered, the stream of random numbers has begun
+        self._answer(np.eye(6)[-1:])  # any ray: when it is answered, the stream of random numbers has begun
 
     def trace(self, rays: np.ndarray, skipped: int = 0) -> np.ndarray:
-        """As `Rtraces.trace`; what is skipped is the first ray turned round, which costs little."""
-        rays = np.vstack([np.tile(rays[:1] * [1, 1, 1, -1, -1, -1], (skipped, 1)), rays])
+        """As `Rtraces.trace`; what is skipped is a ray from far away into the void, which costs little."""
+        away = rays[:1] + np.hstack([FAR * rays[:1, 3:], np.zeros((len(rays[:1]), 3))])
+        rays = np.vstack([np.tile(away, (skipped, 1)), rays])
         return np.concatenate([self._answer(rays[i : i + BLOCK]) for i in range(0, max(len(rays), 1), BLOCK)])[skipped:]
 
     def close(self) -> None:
