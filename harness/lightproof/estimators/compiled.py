@@ -21,6 +21,7 @@ SOURCES = Path(__file__).parent
 STRICT = {"contract", "nnan", "nsz"}  # leaves the order of operations alone: cancellations stay under control
 
 strict = njit(fastmath=STRICT, error_model="numpy")
+inlined = njit(fastmath=STRICT, error_model="numpy", forceinline=True)  # strict, and part of the loop that calls it
 fast = njit(fastmath=True, error_model="numpy")
 
 

@@ -44,24 +44,26 @@ class Beam(NamedTuple):
     strength: float
 
 
-def lamps(scene: scenes.Scene, reach: float) -> list[tuple[str, Lamp | Point | Beam]]:
-    """Every light of a scene but skies in pieces, each with the light's id; `reach` [m] leads out of the scene."""
-    pieces = [(owner, lamp(shape, radiance)) for owner, shape, radiance in glowing(scene)]
+def bulbs(scene: scenes.Scene, reach: float) -> list[tuple[str, Point | Beam]]:
+    """Every light of a scene without an area, but skies, with its id; `reach` [m] leads out of the scene."""
+    found: list[tuple[str, Point | Beam]] = []
     for light in scene.lights:
         match light:
             case scenes.PointLight():
-                pieces.append((light.id, Point(light.position, light.intensity)))
+                found.append((light.id, Point(light.position, light.intensity)))
             case scenes.DirectionalLight():
                 back = -reach * geometry.unit(light.direction)
-                pieces.append((light.id, Beam(tuple(back.tolist()), light.irradiance)))
-    return pieces
+                found.append((light.id, Beam(tuple(back.tolist()), light.irradiance)))
+    return found
 
 
 def glowing(scene: scenes.Scene) -> list[tuple[str, Flat | Sphere, float]]:
-    """Id, shape and radiance [W/(m2 sr)] of every piece of every light with an area; surfaces that emit are lights."""
+    """Id, shape and radiance [W/(m2 sr)] of every piece of every light with an area; surfaces that emit are lights. A piece
+    whose area is zero emits nothing."""
     lights = [light for light in scene.lights if isinstance(light, scenes.AreaLight)]
     lights += [surface for surface in scene.surfaces if surface.radiance]
-    return [(light.id, shape, light.radiance) for light in lights for shape in shapes.parts(light.shape)]
+    pieces = [(light.id, shape, light.radiance) for light in lights for shape in shapes.parts(light.shape)]
+    return [piece for piece in pieces if shapes.area(piece[1]) > 0]
 
 
 def lamp(shape: Flat | Sphere, radiance: float) -> Lamp:

@@ -41,8 +41,8 @@ class McArea(Sampling):
         return Rendering(sum(films), sum(counts), None if any(one is None for one in variances) else sum(variances))
 
     def counts(self, samples: int) -> list[int]:
-        """Samples are shared out over the lights' pieces by strength."""
-        power = np.array([piece.lamp.strength for piece in self.pieces])
+        """Samples are shared out over the lights' pieces by power."""
+        power = np.array([piece.power for piece in self.pieces])
         shares = power / power.sum() if power.any() else np.full(len(power), 1 / len(power))
         return [max(1, round(samples * share)) for share in shares]
 

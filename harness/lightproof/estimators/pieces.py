@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,8 +13,10 @@ from lightproof.estimators.estimator import TASKS, spread
 from lightproof.estimators.kernel import estimate
 from lightproof.estimators.lamps import Beam, Lamp, Point
 from lightproof.estimators.meeting import Cosine, Uniform
+from lightproof.estimators.mixed import Mixed
 from lightproof.estimators.points import BLOCK, Grid, Random
 from lightproof.estimators.shapes import Flat, Sphere
+from lightproof.estimators.subtended import Subtended
 from lightproof.estimators.views import View
 from lightproof.scene import Scene
 
@@ -21,7 +24,7 @@ WORTHWHILE = 2**15  # samples: a task takes longer than to hand it to a thread
 FEW = 3  # blockers that are worth a kernel of their own
 REACH = 1e4  # sizes of the scene: the length of a shadow ray along a beam or to the sky
 
-Source = Lamp | Point | Beam | Uniform | Cosine
+Source = Lamp | Point | Beam | Uniform | Cosine | Subtended | Mixed
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,11 @@ class Piece:
 
     lamp: Source
     blockers: tuple[Flat | Sphere, ...] | np.ndarray
+
+    @property
+    def power(self) -> float:
+        """What its share of samples goes by."""
+        return getattr(self.lamp, "power", self.lamp.strength)
 
     def sums(self, view: View, points: Random | Grid, model: np.floating, threads: int) -> np.ndarray:
         """Sums (3, n) over the points: of a pivot, of what the values are beyond it, and of that squared."""
@@ -43,9 +51,10 @@ class Piece:
         return spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks).T
 
 
-def aimed(scene: Scene, view: View) -> list[Piece]:
-    """Every piece of every light, to be sampled by points."""
-    return [shadowed(scene, view, owner, lamp) for owner, lamp in lamps.lamps(scene, reach(scene))]
+def aimed(scene: Scene, view: View, kind: Callable[[Flat | Sphere, float], Source] = lamps.lamp) -> list[Piece]:
+    """Every piece of every light, to be aimed at; `kind` makes the source of a shape and its radiance [W/(m2 sr)]."""
+    owned = [(owner, kind(shape, radiance)) for owner, shape, radiance in lamps.glowing(scene)]
+    return [shadowed(scene, view, owner, source) for owner, source in (*owned, *lamps.bulbs(scene, reach(scene)))]
 
 
 def met(scene: Scene, view: View, kind: type[Uniform | Cosine]) -> list[Piece]:

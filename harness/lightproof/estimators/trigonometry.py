@@ -1,4 +1,4 @@
-"""Sine and cosine as polynomials: unlike math.sin these run in vector registers."""
+"""Sine, cosine and arctangent as polynomials: unlike those of math these run in vector registers."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ import math
 import numpy as np
 from numba.extending import overload
 
-from lightproof.estimators.compiled import fast
+from lightproof.estimators.compiled import fast, inlined
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.vectors import like
 
+TINY = 1e-280  # keeps a quotient from 0/0
+EIGHTH = math.tan(math.pi / 8)
+ARCTANGENT = tuple((-1) ** k / (2 * k + 1) for k in reversed(range(21)))  # to the last digit up to EIGHTH
 TERMS = {4: 6, 8: 12}  # bytes of a float -> terms of the Taylor series that reach its last digit up to pi/2
 
 
@@ -20,6 +23,18 @@ def turn(t):
     half = t * like(t, np.pi * TICK)
     sine, cosine = series(half)
     return like(t, 2) * sine * cosine, like(t, 1) - like(t, 2) * sine * sine
+
+
+@inlined
+def half_turn(y, x):
+    """The angle of the point x, y in float64, y at least 0: from 0 to pi, to the last digits of itself."""
+    width = abs(x)
+    ratio = min(width, y) / max(width, y, TINY)
+    steep = ratio > EIGHTH
+    rest = (ratio - 1) / (ratio + 1) if steep else ratio
+    angle = rest * horner(ARCTANGENT, rest * rest) + (math.pi / 4 if steep else 0.0)
+    angle = math.pi / 2 - angle if y > width else angle
+    return math.pi - angle if x < 0 else angle
 
 
 def series(angle):

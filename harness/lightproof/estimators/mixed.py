@@ -1,0 +1,129 @@
+"""Lights as points of them and directions of the hemisphere find them, half of the draws each: the protocol of `lamps`.
+
+Veach and Guibas 1995, "Optimally combining sampling techniques for Monte Carlo rendering": the balance heuristic with one
+sample. A point found either way counts L cos(theta)/((p_area + p_cosine)/2), both densities per solid angle. With F, what
+the point would count if area alone had found it, that is 2 F/(1 + F/(pi L)): never above 2 pi L, however near the light.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import overload
+
+from lightproof.estimators import shapes
+from lightproof.estimators.fans import COINCIDES
+from lightproof.estimators.lamps import Lamp, arriving, faced, parameters
+from lightproof.estimators.meeting import GRAZING, around, covers, meet
+from lightproof.estimators.rng import TICK
+from lightproof.estimators.shapes import Flat, Sphere, placed
+from lightproof.estimators.subtended import over
+from lightproof.estimators.vectors import along, cross, dot, like, norm, scaled, sub
+
+INLINED = {"forceinline": True}
+
+
+class Mixed(NamedTuple):
+    """A shape that emits `strength` [W/(m2 sr)] from its front; `level` [m] and all geometry are float64, as in `subtended`."""
+
+    shape: Flat | Sphere
+    strength: float
+    level: float = 0.0
+
+    @property
+    def power(self) -> float:
+        """What its share of samples goes by [W/sr]."""
+        return self.strength * shapes.area(self.shape)
+
+
+@overload(faced)
+def _faced(lamp, origin, frame, model):
+    return face if lamp.instance_class is Mixed else None
+
+
+def face(lamp, origin, frame, model):
+    return Mixed(placed(lamp.shape, origin, frame, 1.0), like(model, lamp.strength), over(lamp.shape, origin))
+
+
+@overload(arriving, jit_options=INLINED)
+def _arriving(lamp, x, s, t):
+    return arriving_mixed if lamp.instance_class is Mixed else None
+
+
+def arriving_mixed(lamp, x, s, t):
+    """The half of the draws that s belongs to decides; within it s runs over the whole again."""
+    at = np.float64(x[0]), np.float64(x[1]), np.float64(x[2])
+    first = s < like(s, 0)
+    again, turns = 2 * np.float64(s) + (0.5 if first else -0.5) / TICK, np.float64(t)
+    down = again * TICK + 0.5
+    w = around(math.sqrt(max(1 - down, 0.0)), down, turns)
+    f_area, d_area = by_area(lamp.shape, lamp.level, at, again, turns)
+    f_cosine, d_cosine = by_cosine(lamp.shape, lamp.level, at, w)
+    f = f_area if first else f_cosine
+    d = d_area if first else d_cosine
+    return like(s, 2 * f / (1 + f / np.pi)), (like(s, d[0]), like(s, d[1]), like(s, d[2]))
+
+
+def by_area(shape, level, x, s, t):
+    """F of a point drawn over the light, see the module, and the vector to it."""
+
+
+@overload(by_area, jit_options=INLINED)
+def _by_area(shape, level, x, s, t):
+    return sphere_by_area if shape.instance_class is Sphere else flat_by_area
+
+
+def by_cosine(shape, level, x, w):
+    """F of the point that the direction w meets, 0 where it meets none, and the vector to it."""
+
+
+@overload(by_cosine, jit_options=INLINED)
+def _by_cosine(shape, level, x, w):
+    return sphere_by_cosine if shape.instance_class is Sphere else flat_by_cosine
+
+
+def flat_by_area(shape, level, x, s, t):
+    a, b = parameters(shape, s, t)
+    d = sub(along(along(shape.center, a, shape.u), b, shape.v), x)
+    return of_flat(shape, level + dot(x, shape.normal), d), d
+
+
+def flat_by_cosine(shape, level, x, w):
+    height, o = level + dot(x, shape.normal), sub(x, shape.center)
+    approach = -dot(w, shape.normal)
+    d = scaled(height / max(approach, GRAZING), w)
+    met = covers(shape, dot(o, shape.dual_u) + dot(d, shape.dual_u), dot(o, shape.dual_v) + dot(d, shape.dual_v))
+    return of_flat(shape, height, d) if met & (approach > GRAZING) else 0.0, d
+
+
+def of_flat(shape, height, d):
+    """cos(theta_x) cos(theta_y) A / r^2 of the point x + d of the flat shape, x being so high over its plane."""
+
+
+@overload(of_flat, jit_options=INLINED)
+def _of_flat(shape, height, d):
+    per_parameter = shapes.PER_PARAMETER[shape.instance_class]
+
+    def evaluate(shape, height, d):
+        r = norm(d)
+        area = per_parameter * norm(cross(shape.u, shape.v))
+        farthest = r + norm(shape.u) + norm(shape.v)
+        return max(d[2], 0.0) / r * (height / r) * (area / (r * r)) if height > COINCIDES * farthest else 0.0
+
+    return evaluate
+
+
+def sphere_by_area(shape, level, x, s, t):
+    return arriving(Lamp(shape, 1.0), x, s, t)
+
+
+def sphere_by_cosine(shape, level, x, w):
+    """By area the cap that faces x is drawn from."""
+    met, d = meet(shape, x, w)
+    away = sub(x, shape.center)
+    r = norm(away)
+    cap = 2 * np.pi * shape.radius * shape.radius * max(r - shape.radius, 0.0) / r
+    inward = -dot(w, along(away, 1.0, d)) / shape.radius
+    return met * cap * w[2] * max(inward, 0.0) / dot(d, d), d
