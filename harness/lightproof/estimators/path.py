@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from lightproof.estimators.limits import no_cylinders, no_solid_angle
+from lightproof.estimators.limits import no_bulbs, no_cylinders, no_solid_angle
 from lightproof.estimators.mc_area import McArea
 from lightproof.estimators.options import Choices
 from lightproof.estimators.paths import Paths, paths
@@ -18,19 +18,30 @@ from lightproof.scene import Scene
 
 
 class Path(McArea):
-    """Every scene that the format knows, but for cylinders and solid angles; any number of reflections."""
+    """Every scene that the format knows, but for cylinders and solid angles; any number of reflections. path/no-next-event
+    aims at no light and meets all of them by its directions."""
 
-    domain = "paths, and the area of the lights at each of their points"
-    density = "cos(theta)/pi per solid angle, 1/A per area of a light"
-    choices: ClassVar[Choices] = {"points": {"independent": Random}, "precision": {"float32": np.float32}}
+    choices: ClassVar[Choices] = {
+        "lights": {"next-event": True, "no-next-event": False},
+        "points": {"independent": Random},
+        "precision": {"float32": np.float32},
+    }
     samples_lights = False
     limits = (no_cylinders, no_solid_angle)
 
+    def __init__(self, name: str, threads: int):
+        super().__init__(name, threads)
+        self.aims = self.choices["lights"][self.chosen["lights"]]
+
     def settings(self) -> Mapping[str, Any]:
-        return {**super().settings(), "lights": "next event", "roulette": "unbiased"}
+        density = "cos(theta)/pi per solid angle" + ("; of lights 1/A per area" if self.aims else "")
+        return {**super().settings(), "domain": "paths", "pdf": density, "roulette": "unbiased"}
+
+    def unsupported(self, scene: Scene) -> str | None:
+        return super().unsupported(scene) or (None if self.aims else no_bulbs(scene))
 
     def seen(self, scene: Scene) -> View | None:
-        return None if any(limit(scene) for limit in McArea.limits) else super().seen(scene)
+        return super().seen(scene) if self.aims and not any(limit(scene) for limit in McArea.limits) else None
 
     def followed(self, scene: Scene) -> Paths:
-        return paths(scene)
+        return paths(scene, self.aims)

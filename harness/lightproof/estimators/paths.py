@@ -80,9 +80,12 @@ class Paths:
         estimate(items, skies, bulbs, film, elements[first:last], contact, first, seed, samples, self.bounces, self.glow, out)
 
 
-def paths(scene: Scene) -> Paths:
-    """A scene's paths with all the reflections that it asks for."""
+def paths(scene: Scene, aim: bool = True) -> Paths:
+    """A scene's paths with all the reflections that it asks for; without `aim` no light is sampled point by point: like
+    surfaces that glow, all are met."""
     world = build(scene, sample_surfaces=False)
+    if not aim:
+        world.items[:, [SAMPLED, LAMP]] = 0
     glowing = (world.items[:, RADIANCE] > 0) & (world.items[:, SAMPLED] == 0)
     bounces = 0 if not scene.reflects else ENDLESS if scene.max_bounces == "all" else scene.max_bounces
     return Paths(world, bounces, bool(len(world.skies) or glowing.any()))

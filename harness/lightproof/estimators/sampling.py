@@ -40,7 +40,7 @@ class Sampling(Composed):
         """Why a scene that the kernel cannot take cannot be traced either."""
         if (self.traces and self.points is Random) or self.seen(scene):
             return None
-        return "its film needs rays, which only the method with independent points follows"
+        return "its film needs rays, which this configuration does not follow; path can"
 
     def variance(self, totals: np.ndarray, squares: np.ndarray, samples: int) -> np.ndarray | None:
         """Variance (n,) of the mean from sums of values and of their squares; unknown where points depend on one another."""
