@@ -41,6 +41,7 @@ CAVEATS = {
     QUASI_RANDOM: "Radiance's own order of random numbers is a fixed sequence of 2,048 that begins anew with each picture:"
                   " cells in penumbrae stay some thousandths of the brightest off, under half a sky some per cents.",
 }
+ABSOLUTE = "Radiance takes what is closer than 1e-6 m for one place, and leaves out a lamp that it sees at a cosine below 1e-4."
 
 
 class Radiance(Method):
@@ -75,7 +76,8 @@ class Radiance(Method):
 
     def caveat(self, scene: Scene) -> str:
         even = all(radiance_transport.is_parallelogram(lamp.shape) for lamp in radiance_transport.lamps(scene))
-        return "" if self.option == NATIVE and even else CAVEATS.get(self.option, "")
+        known = "" if self.option == NATIVE and even else CAVEATS.get(self.option, "")
+        return known or (ABSOLUTE if scene.tolerance_scale == "element" else "")
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()

@@ -34,11 +34,14 @@ def strata(count: int) -> tuple[int, int]:
 
 
 def _positions(grid: tuple[int, int], count: int, generator: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Column and row coordinates (n, 1) over the film, in [0, 1], one in each stratum of each element."""
+    """Column and row coordinates (n, 1) over the film, in [0, 1], one in each stratum of each element; the strata of an element
+    in random order, so that they keep no step with Radiance's own numbers."""
     (rows, columns), (down, across) = grid, strata(count)
-    place = np.indices((rows, columns, down, across)).reshape(4, -1, 1)
-    jitter = generator.random((2, place.shape[1], 1))
-    return (place[1] + (place[3] + jitter[0]) / across) / columns, (place[0] + (place[2] + jitter[1]) / down) / rows
+    row, column = np.indices(grid).reshape(2, -1, 1)
+    order = generator.permuted(np.tile(np.arange(down * across), (rows * columns, 1)), axis=1)
+    jitter = generator.random((2, *order.shape))
+    x, y = (column + (order % across + jitter[0]) / across) / columns, (row + (order // across + jitter[1]) / down) / rows
+    return x.reshape(-1, 1), y.reshape(-1, 1)
 
 
 def _above(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
