@@ -92,6 +92,13 @@ def test_our_own_films_need_no_scene(grade, tmp_path):
     assert "holds 'irradiance', not radiance" in grade(tmp_path / "a.exr", "--quantity", "radiance")[2]
 
 
+@pytest.mark.parametrize("samples", ["0", "-4", "9" * 19, "9" * 5000, "many"])
+def test_a_header_that_counts_nonsense_counts_nothing(grade, tmp_path, samples):
+    """Samples that no picture has are as good as unknown."""
+    status, out, _, _ = grade(save(tmp_path / "a.exr", 2 * PICTURE, samples=samples), "--quantity", "radiance")
+    assert status == 0 and "undecided" in out and "would decide" not in out
+
+
 def film(path: Path, reading: Reading, scene=SCENE) -> np.ndarray:
     (result,) = grading.results([[path]], scene, reading)
     return result.film.reshape(scene.film.grid)

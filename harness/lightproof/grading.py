@@ -7,6 +7,7 @@ pictures that differ in nothing but their seed tell their noise, and are judged 
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -25,6 +26,7 @@ from lightproof.trial import Result, Status, Trial
 METHOD = "picture"
 PROGRAM = ("method_version", "software", "Software")  # attributes that name it
 ALONE = "A single picture is judged as it is, noise included"
+COUNT = re.compile("[1-9][0-9]{0,17}")  # in a header that may say anything
 
 
 @dataclass(frozen=True)
@@ -70,13 +72,13 @@ def header(scene: Scene) -> dict[str, str]:
 def _replicate(result: Result, number: int, alone: bool) -> Result:
     notes = [ALONE, result.caveat] if alone else [result.caveat]
     trial = replace(result.trial, replicate=number)
-    return replace(result, trial=trial, deterministic=alone, caveat="; ".join(filter(None, notes)))
+    return replace(result, trial=trial, deterministic=alone, caveat=". ".join(filter(None, notes)))
 
 
 def _result(path: Path, scene: Scene, reading: Reading, multiple: int) -> Result:
     grid, channels, header = films.read(path, reading.channel)
     _check_header(path, header, scene, reading)
-    half, known = channels.get("quantization"), header.get("samples", "").isdecimal()
+    half, known = channels.get("quantization"), COUNT.fullmatch(header.get("samples", ""))
     samples = int(header["samples"]) if known else multiple * (reading.samples or 1)
     about = {"file": str(path), "quantity": reading.quantity or scene.film.quantity, "factor": reading.factor}
     return Result(
