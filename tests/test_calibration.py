@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lightproof import store, suite
+from lightproof import cli, store, suite
 from lightproof.films import write as write_film
 from lightproof.reporting import page, units
 from lightproof.reporting.evaluation import Evaluation, evaluate
@@ -73,6 +73,26 @@ def test_a_step_between_versions_is_an_alarm(tmp_path, factor, alarming):
     html = page.render(later, {}, lambda scene: (_ for _ in ()).throw(OSError("no picture")), factors)
     assert ("times as bright in 2.0 as in 1.0" in html) == alarming
     assert units.shown(units.current(factors, {"mine": "2.0"})[0]) in html
+
+
+def test_the_last_digit_is_no_alarm(tmp_path):
+    """A renderer without noise, whose interval has no width, adds up in another order."""
+    first = replace(units.measure(run_of(tmp_path, 1.0))[0], factor=1.0, low=1.0, high=1.0)
+    for factor, alarming in ((1 + 1e-8, False), (1 + 1e-4, True)):
+        later = replace(first, version="2.0", factor=factor, low=factor, high=factor, started="2026-02-02T03:04:05+00:00")
+        assert bool(units.alarms([first, later], [later])) == alarming
+
+
+def test_a_broken_file_is_told_before_anything_is_rendered(tmp_path, monkeypatch, capsys):
+    """By every command that reads it."""
+    monkeypatch.chdir(tmp_path)
+    units.FILE.parent.mkdir()
+    units.FILE.write_text("garbage")
+    evaluation = run_of(tmp_path, 1.0)
+    for command in (["calibrate", "mc-area"], ["report", evaluation.run.id]):
+        assert cli.main(command) == 2
+        assert "is no file of factors" in capsys.readouterr().err
+    assert not (tmp_path / "reports" / "runs").exists()
 
 
 def test_an_older_version_is_no_alarm_for_itself(tmp_path):

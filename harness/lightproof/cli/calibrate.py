@@ -29,15 +29,15 @@ def run(options: argparse.Namespace) -> int:
     from lightproof.reporting.evaluation import evaluate
 
     console, file = Console(emoji=False, highlight=False, soft_wrap=True), options.file or units.FILE
+    known = units.read(file)
     boxes = [scene.name for scene in suite.default().cases(units.SCENE).values()]
     planned = {**vars(runs.defaults()), **vars(options), "scenes": boxes}
     record, status = runs.new(argparse.Namespace(**planned), console)
     factors = units.measure(evaluate(record, homes(record)))
     try:
-        known = units.read(file)
         units.keep(file, factors)
-    except (OSError, units.UnitsError) as error:
-        raise UsageError(str(error)) from None
+    except OSError as error:
+        raise UsageError(f"{file}: cannot be written ({error.strerror}); give a file that can, with --file") from None
     for factor in factors:
         console.print(f"{escape(factor.method)} {escape(factor.version)}: {factor.light} light {units.shown(factor)}")
     for alarm in units.alarms(known, factors):

@@ -22,12 +22,9 @@ def run(options: argparse.Namespace) -> int:
     """Write the page and print its path."""
     record = _find(options.run)
     from lightproof import reporting  # pandas and altair take a second that the other commands need not wait
-    from lightproof.reporting.units import UnitsError
 
     try:
         print(reporting.write(record.folder, Suite(options.suite) if options.suite else homes(record)))
-    except UnitsError as error:
-        raise UsageError(str(error)) from None
     except OSError as error:
         raise UsageError(f"{error.filename}: cannot be written ({error.strerror}); the page goes into the run's folder") from None
     return DONE

@@ -17,14 +17,16 @@ from scipy import stats
 
 from lightproof.reporting.evaluation import Cell, Evaluation
 from lightproof.scene import AreaLight, Scene
+from lightproof.statistics import ROUNDING
+from lightproof.store import StoreError
 
 SCENE, WALLS = "flux-closure", 6
-ROUNDING = 1e-9  # of a wall's area
+CLOSED = 1e-9  # of a wall's area
 LEVEL = 0.001  # how often a factor's interval may miss it
 FILE = Path("reports/calibration.csv")
 
 
-class UnitsError(ValueError):
+class UnitsError(StoreError):
     """A file of factors that cannot be read: says which and what would be right."""
 
 
@@ -86,7 +88,7 @@ def light_of(scene: Scene) -> str:
 def _closed(cells: Sequence[Cell]) -> bool:
     """Whether the films are those of every wall: the area vectors of a closed surface add up to nothing."""
     areas = np.array([np.cross(cell.scene.film.u, cell.scene.film.v) for cell in cells])
-    return len(cells) == WALLS and bool(np.abs(areas.sum(axis=0)).max() < ROUNDING * np.abs(areas).max())
+    return len(cells) == WALLS and bool(np.abs(areas.sum(axis=0)).max() < CLOSED * np.abs(areas).max())
 
 
 def _factor(evaluation: Evaluation, method: str, light: str, cells: Sequence[Cell]) -> Factor:
@@ -132,11 +134,11 @@ def current(factors: Iterable[Factor], versions: dict[str, str]) -> list[Factor]
 
 
 def alarms(factors: Sequence[Factor], now: Iterable[Factor]) -> list[Alarm]:
-    """Where the interval of a factor and that of the last other version measured before it have nothing in common."""
+    """Where the interval of a factor and that of the last other version measured before it lie apart, by more than rounding."""
     found = []
     for factor in now:
         others = [other for other in factors if other.of == factor.of and other.version != factor.version
                   and other.started < factor.started]
-        if others and (others[-1].high < factor.low or factor.high < others[-1].low):
+        if others and max(factor.low - others[-1].high, others[-1].low - factor.high) > ROUNDING * others[-1].factor:
             found.append(Alarm(factor, others[-1]))
     return found
