@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from lightproof.method import Method, Rendering
-from lightproof.renderers import importing, radiance_rays, radiance_scene, radiance_transport, transport
+from lightproof.renderers import importing, radiance_rays, radiance_scene, radiance_transport
 from lightproof.renderers.radiance_process import Programs, Rtraces
 from lightproof.renderers.radiance_transport import Transport
 from lightproof.scene import CameraFilm, DirectionalLight, PointLight, PointsFilm, Scene, SunDisc
@@ -69,7 +69,7 @@ class Radiance(Method):
     def unsupported(self, scene: Scene) -> str | None:
         if scene.film.quantity == "solid_angle":
             return "Radiance gives no solid angles"
-        reason = transport.unsupported(scene) or radiance_transport.unsupported(scene, self._plan(scene))
+        reason = radiance_transport.unsupported(scene, self._plan(scene))
         if self.option == CACHE and not reason and not self._plan(scene).bounces:
             return "no light here is indirect, so that Radiance interpolates none"
         return reason

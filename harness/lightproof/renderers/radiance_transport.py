@@ -25,6 +25,7 @@ from lightproof.scene import (
     Surface,
 )
 
+BOUNCES = 1400  # each goes deeper into rtrace's stack, which ends before 2,000
 WIDEST = 60  # degrees: half angle of a distant disc
 
 
@@ -47,7 +48,7 @@ def transport_of(scene: Scene, native: bool = False) -> Transport:
     """What Radiance has to do for a scene; with `native` shadow rays aim at lamps of every shape as Radiance samples them."""
     shaped = [] if native else [lamp for lamp in lamps(scene) if not is_parallelogram(lamp.shape)]
     camera = isinstance(scene.film, CameraFilm)
-    reflections = transport.reflections(scene)
+    reflections = transport.reflections(scene, BOUNCES)
     direct = max(reflections - camera, 0)
     if not _around(scene) and not shaped:
         return Transport(direct, native=native)
@@ -69,7 +70,8 @@ def unsupported(scene: Scene, planned: Transport) -> str | None:
     if not planned.aims and any(isinstance(light, PointLight | DirectionalLight) for light in scene.lights):
         return ("Radiance counts one reflection more for a point or a beam, at which it aims, than for what it finds by looking"
                 " around; this scene has both and limits reflections")
-    return radiance_apertures.crowded(scene, lamps(scene)) if planned.aperture else None
+    crowded = radiance_apertures.crowded(scene, lamps(scene)) if planned.aperture else None
+    return crowded or transport.unsupported(scene, BOUNCES)
 
 
 def lamps(scene: Scene) -> list[Any]:
