@@ -94,6 +94,15 @@ def test_mitsuba_reads_well_formed_xml_with_its_companions(tmp_path):
     assert named and all((tmp_path / name).is_file() for name in named)
 
 
+def test_exports_for_several_tools_may_share_a_folder(tmp_path):
+    """A half sky, which is an image in both: neither overwrites the other's files."""
+    scene = SUITE.scene("roof-opening")
+    export(scene, "mitsuba", tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    export(scene, "luxcore", tmp_path)
+    assert before == {path: path.read_bytes() for path in before} and len(list(tmp_path.iterdir())) > len(before) + 2
+
+
 def test_pbrt_is_given_radiance_one_to_one(tmp_path):
     """square-light, 2.04 W/(m2 sr): the light's rgb, under the sensor that changes nothing; the film's cells in the window."""
     text = export(SUITE.scene("square-light"), "pbrt", tmp_path).read_text()

@@ -25,8 +25,8 @@ class CannotExport(ValueError):
 
 @dataclass(frozen=True)
 class Tool:
-    """`module` has write(scene, path), which writes the main file `path` and companions named after it beside it, or raises
-    CannotExport; `suffix` is that of the main file."""
+    """`module` has write(scene, path), which writes the main file `path` and its companions, or raises CannotExport; `suffix` is
+    that of the main file."""
 
     module: str
     suffix: str
@@ -55,6 +55,11 @@ def view(scene: Scene) -> View:
     if reason:
         raise CannotExport(reason)
     return views.views(scene)[0]
+
+
+def companion(path: Path, name: str) -> Path:
+    """A file that goes beside the main file `path`, named after all of it: exports for several tools may share a folder."""
+    return path.with_name(f"{path.name.replace('.', '-')}-{name}")
 
 
 def remarks(scene: Scene, path: Path) -> list[str]:

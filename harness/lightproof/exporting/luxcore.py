@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from lightproof import exporting
-from lightproof.exporting.mitsuba import write_ply
+from lightproof.exporting.mitsuba import write_grey, write_ply
 from lightproof.renderers import luxcore, luxcore_scene
 from lightproof.renderers.luxcore_scene import Stage
 from lightproof.scene import AreaLight, DirectionalLight, Environment, PointLight, Scene
@@ -53,20 +51,14 @@ def _companions(stage: Stage, path: Path) -> dict[str, Any]:
     """Write a stage's meshes and images; what the scene has to say of them."""
     said: dict[str, Any] = {}
     for name, shape in stage.meshes.items():
-        companion = path.with_name(f"{path.stem}-{name}.ply")
+        companion = exporting.companion(path, f"{name}.ply")
         write_ply(shape, companion)
         said |= {f"scene.shapes.{name}.type": "mesh", f"scene.shapes.{name}.ply": companion.name}
     for name, image in stage.images.items():
-        companion = path.with_name(f"{path.stem}-{name}.exr")
-        _write_image(image, companion)
+        companion = exporting.companion(path, f"{name}.exr")
+        write_grey(image, companion)
         said |= {f"scene.lights.{name}.file": companion.name, f"scene.lights.{name}.gamma": 1.0}
     return said
-
-
-def _write_image(image: np.ndarray, path: Path) -> None:
-    import OpenEXR
-
-    OpenEXR.File({"type": OpenEXR.scanlineimage}, {"RGB": np.repeat(image[..., None], 3, axis=2)}).write(str(path))
 
 
 def _text(properties: Mapping[str, Any]) -> str:

@@ -16,13 +16,12 @@ from lightproof import exporting, geometry
 from lightproof.exporting import numbers
 from lightproof.geometry import Cap, Cylinder, Disk, Polygon, Shape, Sphere
 from lightproof.renderers import mesh, transport
+from lightproof.renderers.mitsuba import FAR, SKY_ROWS
 from lightproof.renderers.views import View, pose
 from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, PointLight, Scene, Surface
 
 KINDS = {bool: "boolean", int: "integer", float: "float", str: "string", tuple: "point"}
 SAMPLES = 1024  # the film adds up in float32 and is off by 5e-5 after 4,096
-SKY_ROWS = 2048  # of the map of half a sky, whose horizon is blurred over one row
-FAR = 1e4  # m: Mitsuba's own far clip, beyond which only scenes seen from farther away go
 
 
 def write(scene: Scene, path: Path) -> None:
@@ -95,15 +94,13 @@ def _light(root: ET.Element, light: Light, path: Path) -> None:
         case Environment(extent="sphere"):
             _rgb(_plugin(root, "emitter", "constant"), "radiance", light.radiance)
         case Environment():
-            _half_sky(root, light, path.with_name(f"{path.stem}-{light.id}.exr"))
+            _half_sky(root, light, exporting.companion(path, f"{light.id}.exr"))
 
 
 def _half_sky(root: ET.Element, light: Environment, path: Path) -> None:
-    import OpenEXR
-
-    sky = np.zeros((SKY_ROWS, 4, 3), np.float32)
+    sky = np.zeros((SKY_ROWS, 4), np.float32)
     sky[: SKY_ROWS // 2] = light.radiance
-    OpenEXR.File({"type": OpenEXR.scanlineimage}, {"RGB": sky}).write(str(path))
+    write_grey(sky, path)
     upright = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
     _placed(_plugin(root, "emitter", "envmap", filename=path.name), upright)
 
@@ -153,7 +150,7 @@ def _shape(root: ET.Element, shape: Shape, inside: bool, path: Path, name: str) 
 
 
 def _mesh(root: ET.Element, shape: mesh.Mesh, path: Path, name: str) -> ET.Element:
-    companion = path.with_name(f"{path.stem}-{name}.ply")
+    companion = exporting.companion(path, f"{name}.ply")
     write_ply(shape, companion)
     return _plugin(root, "shape", "ply", filename=companion.name, face_normals=True)
 
@@ -170,3 +167,10 @@ def write_ply(shape: mesh.Mesh, path: Path) -> None:
             f"element face {len(shape.triangles)}", "property list uchar int vertex_indices", "end_header"]
     vertices, faces = map(numbers, shape.vertices), (f"3 {a} {b} {c}" for a, b, c in shape.triangles)
     path.write_text("\n".join([*head, *vertices, *faces, ""]), encoding="ascii")
+
+
+def write_grey(image: np.ndarray, path: Path) -> None:
+    """An image (rows, columns) as R, G and B of an OpenEXR file."""
+    import OpenEXR
+
+    OpenEXR.File({"type": OpenEXR.scanlineimage}, {"RGB": np.repeat(image[..., None], 3, axis=2)}).write(str(path))
