@@ -53,11 +53,6 @@ def text() -> Any:
     return rule(checked.to_text, TEXT)
 
 
-def texts() -> Any:
-    """A field for a list of at least one line of text."""
-    return rule(lambda value: several(value, checked.to_text, 1), {"type": "array", "items": TEXT, "minItems": 1})
-
-
 def count(least: int, most: int = 2**31 - 1) -> Any:
     """A field for a whole number."""
     return rule(lambda value: checked.to_count(value, least, most), {"type": "integer", "minimum": least, "maximum": most})

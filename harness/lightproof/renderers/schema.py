@@ -10,12 +10,10 @@ import inspect
 import json
 from typing import Any
 
-from lightproof import geometry, scene
+from lightproof import geometry, scene, scene_file
 from lightproof.checked import KEBAB_CASE, Checked
 from lightproof.renderers import fields, manifest, protocol
 
-LIGHTS = (scene.AreaLight, scene.PointLight, scene.DirectionalLight, scene.Environment, scene.SunDisc, scene.OvercastSky)
-FILMS = (scene.PlaneFilm, scene.PointsFilm, scene.CameraFilm)
 MESSAGES = (protocol.Job, protocol.FilmFile, protocol.Rendered, protocol.Seconds, protocol.Declined)
 MANIFEST = (manifest.Manifest, manifest.Supports)
 KEBAB = {"type": "string", "pattern": f"^{KEBAB_CASE.pattern}$"}
@@ -23,9 +21,9 @@ KEBAB = {"type": "string", "pattern": f"^{KEBAB_CASE.pattern}$"}
 
 def whole() -> dict[str, Any]:
     """The schema of a job or an answer; `$defs` holds everything that they are made of, and the manifest."""
-    shapes = geometry.SHAPES.values()
-    objects = {fields.def_name(cls): of(cls) for cls in (*MESSAGES, *MANIFEST, *LIGHTS, *FILMS, scene.Surface, *shapes)}
-    unions = {"light": LIGHTS, "film": FILMS, "shape": shapes, "answer": (protocol.Rendered, protocol.Declined)}
+    lights, films, shapes = manifest.LIGHTS.values(), scene_file.FILMS.values(), geometry.SHAPES.values()
+    objects = {fields.def_name(cls): of(cls) for cls in (*MESSAGES, *MANIFEST, *lights, *films, scene.Surface, *shapes)}
+    unions = {"light": lights, "film": films, "shape": shapes, "answer": (protocol.Rendered, protocol.Declined)}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": f"Lightproof's protocol for renderers, version {protocol.VERSION}",
