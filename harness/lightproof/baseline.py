@@ -13,8 +13,6 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import get_type_hints
 
-import pandas
-
 from lightproof.checked import plain
 from lightproof.verdict import Outcome
 
@@ -51,6 +49,8 @@ class State:
 
 def read(path: Path) -> dict[Key, State]:
     """The accepted state. Raises BaselineError."""
+    import pandas  # takes a second that the command line, which imports this file, need not wait for
+
     columns = get_type_hints(State)
     try:
         table = pandas.read_csv(path, dtype=columns, keep_default_na=False)[list(columns)]
@@ -75,6 +75,8 @@ def _matches(name: str, globs: Sequence[str]) -> bool:
 
 def to_csv(states: Iterable[State]) -> str:
     """The text of a baseline with these rows, sorted; the variance to the three digits that its interval is worth."""
+    import pandas
+
     rows = [asdict(state) for state in sorted(states, key=lambda state: state.key)]
     table = pandas.DataFrame(rows, columns=[field.name for field in fields(State)])
     return table.to_csv(index=False, float_format="%.3g", lineterminator="\n")

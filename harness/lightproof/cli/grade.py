@@ -105,7 +105,8 @@ def _doubts(verdict: Verdict, results: Sequence[Result], scene: Scene, judge: Ju
     reference = judge.reference(results)
     if verdict.outcome is Outcome.UNDECIDED and reference is not None:
         film = np.mean([result.film for result in results], axis=0)
-        yield (diagnose.diagnose(film, np.zeros(scene.size), reference.value, scene) or "").capitalize()
+        mistake = diagnose.diagnose(film, np.zeros(scene.size), reference.value, scene) or ""
+        yield mistake[:1].upper() + mistake[1:]
     if verdict.outcome is not Outcome.PASS and scene.film.quantity == "irradiance" and unsaid:
         yield "It was read as irradiance; of a picture of an exported receiver say --quantity radiance"
 
