@@ -38,6 +38,8 @@ def _matching(pattern: str) -> list[Entry]:
         return [_own(**target.groupdict())]
     if pattern.endswith(".toml"):
         return [_outside(Path(pattern).resolve())]
+    if pattern.endswith(".py"):
+        raise UsageError(f"{pattern}: name the function or class too, such as {pattern}:render")
     names = fnmatch.filter(METHODS, pattern)
     if not names:
         raise unknown("method", pattern, [*METHODS])
