@@ -32,7 +32,8 @@ from lightproof.store import StoreError
 
 ROOT = suite.default().root
 SCENE = suite.default().scene("point-light")
-FOLDER = Path(tempfile.mkdtemp(prefix="lightproof-fuzz-"))
+SCRATCH = tempfile.TemporaryDirectory(prefix="lightproof-fuzz-")
+FOLDER = Path(SCRATCH.name)
 EXAMPLES = 40
 
 MANIFEST = {
