@@ -126,6 +126,9 @@ def test_half_floats_widen_the_intervals(tmp_path):
 
 
 def test_what_does_not_fit(tmp_path):
+    films.write(tmp_path / "b.exr", SCENE.film.grid, {"Y": EXACT.ravel(), "quantization": np.full(EXACT.size, -1.0)}, {})
+    with pytest.raises(FilmError, match="no half step"):
+        film(tmp_path / "b.exr", Reading())
     for picture, reading, scene, message in (
         (PICTURE[1:], Reading(), SCENE, r"a\.exr: is 16 x 11 pixels; point-light takes 16 x 12"),
         (PICTURE, Reading(channel="depth"), SCENE, r"no channel or lit layer 'depth'.*channels: B, G, R"),

@@ -108,7 +108,7 @@ def test_what_no_finite_run_excludes_is_said_once(html):
 
 def test_what_triangles_change_stands_beside_the_verdict(html):
     """path has triangles that change 2e-4 of the scale, mc-cosine some of unknown effect, the other methods none."""
-    said = {"path": "; of the error at most 0.020 % comes from triangles",
+    said = {"path": "; triangles in the place of round shapes change an element by at most 0.020 %",
             "mc-cosine": "; what triangles in the place of round shapes change is not known", "mc-area": None}  # fmt: skip
     reasons = re.findall(r"<p><strong>([a-z-]+)</strong> on <a.*?</a></p>\s*<p>(.*?)</p>", html)
     for method, sentence in said.items():

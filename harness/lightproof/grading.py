@@ -79,6 +79,8 @@ def _result(path: Path, scene: Scene, reading: Reading, multiple: int) -> Result
     grid, channels, header = films.read(path, reading.channel)
     _check_header(path, header, scene, reading)
     half, known = channels.get("quantization"), COUNT.fullmatch(header.get("samples", ""))
+    if half is not None and not (half >= 0).all():
+        raise FilmError(f"{path}: its channel quantization holds what is no half step; each value must be zero or more")
     samples = int(header["samples"]) if known else multiple * (reading.samples or 1)
     about = {"file": str(path), "quantity": reading.quantity or scene.film.quantity, "factor": reading.factor}
     return Result(

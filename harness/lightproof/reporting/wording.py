@@ -42,10 +42,10 @@ def percent(value: float, digits: int = 2) -> str:
 
 
 def triangles(change: float) -> str:
-    """What is to be said of triangles that change a film by `change` of the tolerance scale."""
+    """What is to be said of triangles that change an element by up to `change` of the tolerance scale."""
     if not math.isfinite(change):
         return "what triangles in the place of round shapes change is not known"
-    return f"of the error at most {percent(change) if change < 1 else 'all'} comes from triangles"
+    return f"triangles in the place of round shapes change an element by at most {percent(change)}"
 
 
 def interval(low: float, high: float) -> str:
