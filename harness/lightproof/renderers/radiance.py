@@ -18,13 +18,14 @@ from typing import Any
 import numpy as np
 
 from lightproof.method import Method, Rendering
-from lightproof.renderers import importing, radiance_rays, radiance_scene, radiance_transport
+from lightproof.renderers import importing, radiance_apertures, radiance_rays, radiance_scene, radiance_transport
 from lightproof.renderers.radiance_process import Programs, Rtraces
 from lightproof.renderers.radiance_transport import Transport
 from lightproof.scene import CameraFilm, DirectionalLight, PointLight, PointsFilm, Scene, SunDisc
 
 SHAPES, SCENE, OCTREE = "shapes.cal", "scene.rad", "scene.oct"
 STRATA = 64  # parts of a lamp or of the hemisphere, each sampled once from each point
+EXTENT = 1e3  # about how large a scene is made: Radiance takes for one place what is closer than 1e-6
 AT_ONCE = 1 << 18  # rays made at a time
 EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-dj", "1", "-st", "1", "-lw", "0"]
 """No shadow ray is left out, lamps are sampled all over, no path is cut by its weight."""
@@ -41,7 +42,8 @@ CAVEATS = {
     QUASI_RANDOM: "Radiance's own order of random numbers is a fixed sequence of 2,048 that begins anew with each picture:"
                   " cells in penumbrae stay some thousandths of the brightest off, under half a sky some per cents.",
 }
-ABSOLUTE = "Radiance takes what is closer than 1e-6 m for one place, and leaves out a lamp that it sees at a cosine below 1e-4."
+ABSOLUTE = ("Radiance takes for one place what is closer than about a billionth of the scene's size, and leaves out a lamp that"
+            " it sees at a cosine below 1e-4.")
 
 
 class Radiance(Method):
@@ -50,6 +52,7 @@ class Radiance(Method):
     def __init__(self, name: str, threads: int):
         super().__init__(name, threads)
         self.option = name.partition("/")[2]
+        self.deterministic = self.option == QUASI_RANDOM
         self.rtraces: Rtraces | None = None
 
     def open(self) -> None:
@@ -70,7 +73,7 @@ class Radiance(Method):
         if scene.film.quantity == "solid_angle":
             return "Radiance gives no solid angles"
         reason = radiance_transport.unsupported(scene, self._plan(scene))
-        if self.option == CACHE and not reason and not self._plan(scene).bounces:
+        if self.option == CACHE and not reason and not (scene.reflects and self._plan(scene).bounces):
             return "no light here is indirect, so that Radiance interpolates none"
         return reason
 
@@ -84,28 +87,30 @@ class Radiance(Method):
         self.film, self.planned = scene.film, self._plan(scene)
         self.strata = 1 if self.option == CACHE else strata(scene, self.planned)
         self.options = [*options(scene, self.planned, self.strata, self.option == CACHE), self._sequence()]
-        self.skips = self.options[-1] == SEQUENCE and self.option != QUASI_RANDOM
+        self.skips = self.options[-1] == SEQUENCE and not self.deterministic
         place = Path(self.folder.name)
         (place / SHAPES).write_text(radiance_scene.SHAPES)
         (place / SCENE).write_text(radiance_scene.describe(scene, self.planned, SHAPES))
+        self.scale = 10.0 ** round(math.log10(EXTENT / radiance_apertures.whole(scene)[1]))
+        scaled = self.programs.output("xform", "-s", repr(self.scale), place / SCENE)
         self.octree = place / OCTREE
-        self.octree.write_bytes(self.programs.output("oconv", place / SCENE))
+        self.octree.write_bytes(self.programs.output("oconv", "-", given=scaled))
         self._start()
         return {"setup": time.perf_counter() - start}
 
     def render(self, samples: int, seed: int) -> Rendering:
-        if self.option in (CACHE, QUASI_RANDOM):
+        if self.deterministic or self.option == CACHE:
             self._start()
         points = math.ceil(samples / self.strata)
         passes = math.ceil(points * math.prod(self.film.grid) / AT_ONCE)
         each = math.prod(radiance_rays.strata(math.ceil(points / passes)))
-        generator = np.random.default_rng(seed)
+        generator = np.random.default_rng(0 if self.deterministic else seed)
         film = np.mean([self._pass(each, generator) for _ in range(passes)], axis=0)
         return Rendering(film, samples=passes * each * self.strata)
 
     def _pass(self, count: int, generator: np.random.Generator) -> np.ndarray:
         skipped = partial(generator.integers, PERIOD) if self.skips else int
-        values = self.rtraces.trace(radiance_rays.rays(self.film, count, generator), skipped)
+        values = self.rtraces.trace(radiance_rays.rays(self.film, count, generator, self.scale), skipped)
         return values.reshape(-1, count).mean(axis=1)
 
     def _plan(self, scene: Scene) -> Transport:
@@ -114,7 +119,7 @@ class Radiance(Method):
     def _sequence(self) -> str:
         """Radiance's own sequence of random numbers has less noise, and begun anywhere it is right on the mean over lamps; over
         the hemisphere it is not."""
-        return SEQUENCE if self.option == QUASI_RANDOM or not self.planned.bounces else RANDOM
+        return SEQUENCE if self.deterministic or not self.planned.bounces else RANDOM
 
     def _start(self) -> None:
         """New processes, with empty caches and at the start of their sequences."""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+LAG = 0.05  # s: more than the clock that rtrace reads is behind
 FAR = 1e9  # m
 BLOCK = 2048  # rays at a time: their answers fit into a pipe, so that neither side waits for the other for ever
 
@@ -27,9 +28,9 @@ class Programs:
         self.environment = {**os.environ, "RAYPATH": f"{scenes}:{folder / 'lib'}"}
         self.said = scenes / "said.txt"
 
-    def output(self, program: str, *arguments: str | Path) -> bytes:
+    def output(self, program: str, *arguments: str | Path, given: bytes = b"") -> bytes:
         """What a program prints. Raises RadianceFailed."""
-        done = subprocess.run([self.bin / program, *arguments], capture_output=True, env=self.environment, check=False)
+        done = subprocess.run([self.bin / program, *arguments], input=given, capture_output=True, env=self.environment)
         if done.returncode:
             raise RadianceFailed(_ending(program, done.returncode, done.stderr))
         return done.stdout
@@ -71,7 +72,7 @@ class Rtraces:
 
     @staticmethod
     def _new_second() -> bool:
-        return int(time.time()) > Rtraces.second
+        return time.time() > Rtraces.second + 1 + LAG
 
     def _join(self) -> None:
         self._running.append(self._start())

@@ -12,19 +12,20 @@ from lightproof.scene import CameraFilm, Film, PlaneFilm, PointsFilm
 OFFSET = 1e-4  # m: rtrace measures irradiance this far above the point that it is given
 
 
-def rays(film: Film, count: int, generator: np.random.Generator) -> np.ndarray:
+def rays(film: Film, count: int, generator: np.random.Generator, scale: float) -> np.ndarray:
     """Origins and directions (elements x count, 6): for irradiance a point and the normal there, for radiance a line of sight.
-    The `count` of an element, a product of `strata`, lie together."""
+    The `count` of an element, a product of `strata`, lie together; lengths times `scale`."""
     match film:
         case PlaneFilm():
             a, b = _positions(film.grid, count, generator)
             points = np.array(film.origin) + a * np.array(film.u) + b * np.array(film.v)
-            return _above(points, film.normal)
+            return _above(scale * points, film.normal)
         case PointsFilm():
             points, normals = np.repeat(film.positions, count, axis=0), np.repeat(film.normals, count, axis=0)
-            return _above(points, geometry.unit(normals))
+            return _above(scale * points, geometry.unit(normals))
         case CameraFilm():
-            return _sight(film, *_positions(film.grid, count, generator))
+            lines = _sight(film, *_positions(film.grid, count, generator))
+            return lines * np.repeat([scale, 1.0], 3)
 
 
 def strata(count: int) -> tuple[int, int]:
