@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -14,7 +13,7 @@ from rich.markup import escape
 
 from lightproof import diagnose, films, grading, machine, plan, store, suite
 from lightproof.cli import selection
-from lightproof.cli.run import count, exit_status
+from lightproof.cli.run import count, exit_status, positive
 from lightproof.cli.status import INCOMPLETE
 from lightproof.exporting import CannotExport
 from lightproof.grading import METHOD, Reading
@@ -38,23 +37,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--scene", metavar="SCENE", help="id, id:case or path of a .toml file (default: what the picture's header says)")
     add("--quantity", choices=("irradiance", "radiance", "solid_angle"), default="",
         help="what a pixel holds; radiance for a picture of an exported receiver (default: what the scene's film is of)")
-    add("--scale", type=factor, default=1.0, metavar="FACTOR", help="pixel values times this are in SI units (default: 1)")
+    add("--scale", type=positive("number"), default=1.0, metavar="FACTOR",
+        help="pixel values times this are in SI units (default: 1)")
     add("--channel", default="", metavar="NAME", help="a channel or layer (default: Y, or the mean of R, G and B)")
     add("--samples", type=count(1), metavar="N", help="per pixel, where that is known")
     add("--out", type=Path, default=GRADES, metavar="DIR", help="where a folder for the page is made (default: %(default)s)")
     add("--suite", type=Path, metavar="DIR", help="a folder with scenes/ and references/ (default: Lightproof's own)")
     add("--strict", action="store_true", help="exit 1 where the verdict is fail, 3 where it is undecided")
-
-
-def factor(text: str) -> float:
-    """A factor of the command line."""
-    value = float(text)
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is out of range; give a number greater than 0")
-    return value
-
-
-factor.__name__ = "number"
 
 
 def run(options: argparse.Namespace) -> int:

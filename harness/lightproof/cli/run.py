@@ -49,12 +49,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--strict", action="store_true", help="exit 1 where a verdict is fail, 3 where one is undecided")
 
 
-def seconds(text: str) -> float:
-    """A time of the command line [s]."""
-    value = float(text)
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is out of range; give seconds greater than 0")
-    return value
+def positive(name: str):
+    """A reader of numbers greater than 0."""
+
+    def read(text: str) -> float:
+        value = float(text)
+        if not 0 < value < math.inf:
+            raise argparse.ArgumentTypeError(f"{text} is out of range; give a {name} greater than 0")
+        return value
+
+    read.__name__ = name
+    return read
 
 
 def count(least: int):
@@ -70,7 +75,7 @@ def count(least: int):
     return read
 
 
-seconds.__name__ = "number of seconds"
+seconds = positive("number of seconds")
 
 
 def run(options: argparse.Namespace) -> int:
