@@ -178,7 +178,7 @@ def test_spheres_are_sampled_uniformly_in_projected_solid_angle():
 def test_mixture_has_a_mean_and_a_bound(name):
     """What the draws of area and cosine count: the same mean as directions into the light, none above 2 pi."""
     source = subtending(SHAPES[name])
-    both, alone = (sampled(one)[:, 0] for one in (mixed.Mixed(*source), source))
+    both, alone = (sampled(one, blocks=128)[:, 0] for one in (mixed.Mixed(*source), source))
     error = math.hypot(*(one.std() / math.sqrt(len(one)) for one in (both, alone)))
     assert abs(both.mean() - alone.mean()) < SIGMAS * error
     assert both.max() <= 2 * math.pi
