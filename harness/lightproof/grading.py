@@ -81,7 +81,7 @@ def _result(path: Path, scene: Scene, reading: Reading, multiple: int) -> Result
     half, known = channels.get("quantization"), COUNT.fullmatch(header.get("samples", ""))
     if half is not None and not (half >= 0).all():
         raise FilmError(f"{path}: its channel quantization holds what is no half step; each value must be zero or more")
-    samples = int(header["samples"]) if known else multiple * (reading.samples or 1)
+    samples = (int(header["samples"]) if known else multiple * (reading.samples or 1)) * _block(grid, scene) ** 2
     about = {"file": str(path), "quantity": reading.quantity or scene.film.quantity, "factor": reading.factor}
     return Result(
         Trial(scene.id, scene.case, scene.digest, METHOD, samples, 0), Status.OK,
@@ -114,9 +114,14 @@ def _elements(path: Path, picture: np.ndarray, scene: Scene, reading: Reading) -
     return reading.factor * exporting.view(scene).elements(_fitted(path, picture, scene))
 
 
+def _block(grid: tuple[int, int], scene: Scene) -> int:
+    """Pixels along each side of an element."""
+    return 1 if isinstance(scene.film, PointsFilm) else max(1, grid[0] // scene.film.grid[0])
+
+
 def _fitted(path: Path, picture: np.ndarray, scene: Scene) -> np.ndarray:
     rows, columns = scene.film.grid
-    block = 1 if isinstance(scene.film, PointsFilm) else max(1, picture.shape[0] // rows)
+    block = _block(picture.shape, scene)
     if picture.shape != (rows * block, columns * block):
         has = f"{picture.shape[1]} x {picture.shape[0]}"
         raise FilmError(f"{path}: is {has} pixels; {scene.name} takes {columns} x {rows}, or for a mean whole multiples of it")

@@ -15,12 +15,11 @@ from lightproof.judging import homes
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Which methods, and where the factors go."""
+    """Which methods, for how long."""
     add = parser.add_argument
     add("methods", nargs="*", metavar="METHOD", help="as for run --with (default: each renderer's best configuration)")
     add("--budget", type=runs.seconds, default=120.0, metavar="S", help="of the run that measures (default: %(default)g s)")
     add("--out", type=Path, default=runs.RUNS, metavar="DIR", help="where that run's folder is made (default: %(default)s)")
-    add("--file", type=Path, metavar="FILE", help="where the factors are kept (default: reports/calibration.csv)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -28,16 +27,15 @@ def run(options: argparse.Namespace) -> int:
     from lightproof.reporting import units  # pandas takes a second that the other commands need not wait
     from lightproof.reporting.evaluation import evaluate
 
-    console, file = Console(emoji=False, highlight=False, soft_wrap=True), options.file or units.FILE
-    known = units.read(file)
+    console, known = Console(emoji=False, highlight=False, soft_wrap=True), units.read(units.FILE)
     boxes = [scene.name for scene in suite.default().cases(units.SCENE).values()]
     planned = {**vars(runs.defaults()), **vars(options), "scenes": boxes}
     record, status = runs.new(argparse.Namespace(**planned), console)
     factors = units.measure(evaluate(record, homes(record)))
     try:
-        units.keep(file, factors)
+        units.keep(units.FILE, factors)
     except OSError as error:
-        raise UsageError(f"{file}: cannot be written ({error.strerror}); give a file that can, with --file") from None
+        raise UsageError(f"{units.FILE}: cannot be written ({error.strerror}); mend that and calibrate again") from None
     for factor in factors:
         console.print(f"{escape(factor.method)} {escape(factor.version)}: {factor.light} light {units.shown(factor)}")
     for alarm in units.alarms(known, factors):

@@ -6,6 +6,7 @@ A film of irradiance is exported as what `renderers.views` lays out for it: a di
 from __future__ import annotations
 
 import importlib
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from types import UnionType
@@ -92,4 +93,5 @@ def refuse(scene: Scene, kinds: type | UnionType, tool: str) -> None:
     """Raise CannotExport for the first light of the scene that is none of the `kinds` a writer knows how to say."""
     for light in scene.lights:
         if not isinstance(light, kinds):
-            raise CannotExport(f"light '{light.id}': the export for {tool} has no {type(light).__name__} yet")
+            kind = re.sub("(?<=.)(?=[A-Z])", " ", type(light).__name__).lower()
+            raise CannotExport(f"light '{light.id}': the export for {tool} has no {kind} yet")

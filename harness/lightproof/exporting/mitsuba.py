@@ -15,8 +15,9 @@ import numpy as np
 from lightproof import exporting, geometry
 from lightproof.exporting import numbers
 from lightproof.geometry import Cap, Cylinder, Disk, Polygon, Shape, Sphere
-from lightproof.renderers import mesh, transport
+from lightproof.renderers import mesh
 from lightproof.renderers.mitsuba import FAR, SKY_ROWS
+from lightproof.renderers.mitsuba_configurations import caveat, integrator
 from lightproof.renderers.views import View, pose
 from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, PointLight, Scene, Surface
 
@@ -30,8 +31,8 @@ def write(scene: Scene, path: Path) -> None:
     view = exporting.view(scene)
     root = ET.Element("scene", version="3.0.0")
     ET.SubElement(root, "default", name="spp", value=str(SAMPLES))
-    depth = transport.edges(scene)
-    _plugin(root, "integrator", "path", max_depth=depth, rr_depth=depth + 1)
+    search = integrator(scene)
+    _plugin(root, "integrator", search.pop("type"), **search)
     _camera(root, view)
     if view.receiver:
         _content(_rectangle(root, view.receiver.corners), view.receiver.reflectance, 0)
@@ -45,7 +46,8 @@ def write(scene: Scene, path: Path) -> None:
 def _head(scene: Scene, path: Path) -> list[str]:
     """As a processing instruction: a comment of XML may hold no double hyphen, and options have them."""
     lines = [*exporting.remarks(scene, path), f"Render: mitsuba -m scalar_rgb -o {path.stem}.exr {path.name}",
-             f"Sums in float32 lose digits beyond {SAMPLES} samples: for less noise, average pictures of different seeds."]
+             f"Sums in float32 lose digits beyond {SAMPLES} samples: for less noise, average pictures of different seeds.",
+             *filter(None, [caveat(scene, integrator(scene))])]
     return ['<?xml version="1.0" encoding="utf-8"?>', "<?lightproof", *(line.replace("?>", "? >") for line in lines), "?>"]
 
 

@@ -15,10 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from lightproof.geometry import Sphere
 from lightproof.method import Method, Rendering
 from lightproof.renderers import importing, mitsuba_configurations, mitsuba_shapes, options, transport, views
-from lightproof.renderers.mitsuba_configurations import CONFIGURATIONS, combines, integrator
+from lightproof.renderers.mitsuba_configurations import CONFIGURATIONS, integrator
 from lightproof.renderers.views import View
 from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, PointLight, Scene, Surface
 
@@ -65,11 +64,7 @@ class Mitsuba(Method):
         return search or transport.unsupported(scene) or views.unsupported(scene)
 
     def caveat(self, scene: Scene) -> str:
-        inward = [surface for surface in scene.surfaces if surface.radiance and surface.side == "inside"]
-        if combines(self.integrator) and any(isinstance(surface.shape, Sphere) for surface in inward):
-            return ("Mitsuba's multiple importance sampling is biased inside an analytic sphere that emits: emitter sampling"
-                    " alone and BSDF sampling alone are right, their combination is too bright, more so far from the origin.")
-        return ""
+        return mitsuba_configurations.caveat(scene, self.integrator)
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()

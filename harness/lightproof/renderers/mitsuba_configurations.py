@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from lightproof.geometry import Sphere
 from lightproof.renderers import transport
 from lightproof.scene import Environment, Scene
 
@@ -52,7 +53,16 @@ def integrator(scene: Scene, search: str = LEAN) -> dict[str, Any]:
     return {"type": "direct", "emitter_samples": int(emitters), "bsdf_samples": int(directions)}
 
 
-def combines(integrator: dict[str, Any]) -> bool:
+def caveat(scene: Scene, integrator: dict[str, Any]) -> str:
+    """What is wrong with an integrator on a scene, or nothing."""
+    inward = [surface for surface in scene.surfaces if surface.radiance and surface.side == "inside"]
+    if _combines(integrator) and any(isinstance(surface.shape, Sphere) for surface in inward):
+        return ("Mitsuba's multiple importance sampling is biased inside an analytic sphere that emits: emitter sampling"
+                " alone and BSDF sampling alone are right, their combination is too bright, more so far from the origin.")
+    return ""
+
+
+def _combines(integrator: dict[str, Any]) -> bool:
     """Whether emitters and directions are both sampled: multiple importance sampling."""
     return integrator["type"] == "path" or integrator["emitter_samples"] * integrator["bsdf_samples"] > 0
 
