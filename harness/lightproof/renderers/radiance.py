@@ -25,7 +25,7 @@ from lightproof.scene import CameraFilm, DirectionalLight, PointLight, PointsFil
 
 SHAPES, SCENE, OCTREE = "shapes.cal", "scene.rad", "scene.oct"
 STRATA = 64  # parts of a lamp or of the hemisphere, each sampled once from each point
-EXTENT = 1e3  # about how large a scene is made: Radiance takes for one place what is closer than 1e-6
+EXTENT = 3e3  # about how large a scene is made (a room in millimetres): what is closer than 1e-6 Radiance takes for one place
 AT_ONCE = 1 << 18  # rays made at a time
 EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-dj", "1", "-st", "1", "-lw", "0"]
 """No shadow ray is left out, lamps are sampled all over, no path is cut by its weight."""
