@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from lightproof.estimators.lamps import lamps
+from lightproof.estimators.lamps import bulbs, glowing
 from lightproof.estimators.mc_area import McArea
 from lightproof.estimators.shapes import Flat, Parallelogram
 from lightproof.method import Rendering
@@ -35,8 +35,10 @@ class CosineForgotten(McArea):
 
     def unsupported(self, scene: Scene) -> str | None:
         refused = super().unsupported(scene) or (scene.surfaces and "this mistake is made without blockers only")
-        shapes = [getattr(lamp, "shape", None) for _, lamp in lamps(scene, reach=1.0)] if not refused else []
-        return refused or next((WHAT for shape in shapes if not isinstance(shape, Parallelogram)), None)
+        if refused:
+            return refused
+        flat = all(isinstance(shape, Parallelogram) for _, shape, _ in glowing(scene))
+        return None if flat and not bulbs(scene, reach=1.0) else WHAT
 
     def render(self, samples: int, seed: int) -> Rendering:
         rng = np.random.default_rng(seed)

@@ -102,7 +102,7 @@ film = {{ kind = "points", quantity = "irradiance", positions = [[0.25, 0.5, 0]]
 """
 
 
-@pytest.mark.parametrize("method", [name for name, entry in METHODS.items() if entry.worker == OURS])
+@pytest.mark.parametrize("method", [name for name, entry in METHODS.items() if entry.worker == OURS and "/" not in name])
 @pytest.mark.parametrize("vertices", [LINE, [LINE[0], LINE[2], LINE[2], LINE[0]], [LINE[1]] * 3], ids=["line", "back", "point"])
 def test_a_light_without_area_gives_nothing(tmp_path, method, vertices):
     """Exactly 0 by every method of ours, at a point right below, and on a floor."""
