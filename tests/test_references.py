@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from lightproof import suite
-from lightproof.certify import admission, register, sampling, second_engine
-from lightproof.certify.engine import certify
+from lightproof.certify import admission, register, sampling, second_engine, spot_check
 from lightproof.reporting import citations
 from lightproof.scene import PlaneFilm
 
@@ -43,16 +42,16 @@ def test_admitted_by_the_rules(name):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_derived_again(name):
-    """The first engine finds the stored values bit for bit, the second within the uncertainty and its own rounding."""
+    """The first engine finds the stored values bit for bit (an estimate but for rounding) and is as sure of them, the second
+    finds them within the uncertainty and its own rounding."""
     scene = SCENES[name]
     reference = HOME.reference(scene)
     elements = sample(scene, reference)
-    first = certify(scene, elements)
+    assert not [complaint for element in elements if (complaint := spot_check.difference(scene, reference, element))]
     second = second_engine.values(second_engine.find(scene.id, FOLDER), scene, elements)
-    assert (first.value == reference.value[elements]).all()
-    assert (first.uncertainty <= reference.uncertainty[elements]).all()
-    scale = np.abs(first.value) if scene.tolerance_scale == "element" else np.abs(reference.value).max()
-    assert (np.abs(second - first.value) <= reference.uncertainty[elements] + ROUNDING * scale).all()
+    value = reference.value[elements]
+    scale = np.abs(value) if scene.tolerance_scale == "element" else np.abs(reference.value).max()
+    assert (np.abs(second - value) <= reference.uncertainty[elements] + ROUNDING * scale).all()
 
 
 @pytest.mark.parametrize("scene_id", HOME.ids)

@@ -36,7 +36,8 @@ def irradiance(light: Solid, blockers: Sequence[Solid], x: Array, normal: Array)
     circles = (*lamp.circles, horizon, *(circle for part in parts for circle in part.circles))
 
     def contains(side: Side) -> Array:
-        return lamp.contains(side) & side(horizon) & ~reduce(np.logical_or, (part.contains(side) for part in parts), False)
+        hidden = reduce(np.logical_or, (part.contains(side) for part in parts), np.False_)
+        return lamp.contains(side) & side(horizon) & ~hidden
 
     marks: dict[int, list[Array]] = {id(circle): [] for circle in circles}
     for a, b in combinations(circles, 2):
