@@ -25,6 +25,7 @@ from lightproof.scene import CameraFilm, DirectionalLight, PointLight, PointsFil
 
 SHAPES, SCENE, OCTREE = "shapes.cal", "scene.rad", "scene.oct"
 STRATA = 64  # parts of a lamp or of the hemisphere, each sampled once from each point
+DROPPED = 1e-4  # times a lamp's parts: the cosine below which Radiance takes one for seen from behind
 EXTENT = 3e3  # about how large a scene is made (a room in millimetres): what is closer than 1e-6 Radiance takes for one place
 AT_ONCE = 1 << 18  # rays made at a time
 EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-dj", "1", "-st", "1", "-lw", "0"]
@@ -129,15 +130,17 @@ class Radiance(Method):
 
 
 def strata(scene: Scene, planned: Transport) -> int:
-    """Parts of each lamp, or of the hemisphere, that are sampled from one point. One where paths go on from there; and where
-    each element counts by itself, because Radiance leaves out a part that it sees at a cosine below 1e-4 times their number."""
-    lamps = radiance_transport.lamps(scene) + [light for light in scene.lights if isinstance(light, SunDisc)]
+    """Parts of each lamp, or of the hemisphere, that are sampled from one point. One where paths go on from there; and, because
+    Radiance leaves out a part that it sees at a cosine below `DROPPED` times their number, where a lamp is seen as flatly as
+    that, or where each element counts by itself."""
+    lamps, suns = radiance_transport.lamps(scene), [light for light in scene.lights if isinstance(light, SunDisc)]
     if planned.bounces:
-        aimed = planned.aims and (lamps or any(isinstance(light, PointLight | DirectionalLight) for light in scene.lights))
-        return STRATA if planned.bounces == 1 and not aimed else 1
+        small = any(isinstance(light, PointLight | DirectionalLight) for light in scene.lights)
+        return STRATA if planned.bounces == 1 and not (planned.aims and (lamps or suns or small)) else 1
     looks = not isinstance(scene.film, CameraFilm) or scene.reflects
     each = isinstance(scene.film, PointsFilm) or scene.tolerance_scale == "element"
-    return STRATA if lamps and looks and not each else 1
+    flatly = any(radiance_apertures.flatly(lamp.shape, scene.film, STRATA * DROPPED) for lamp in lamps)
+    return STRATA if (lamps or suns) and looks and not each and not flatly else 1
 
 
 def options(scene: Scene, planned: Transport, parts: int, cache: bool) -> list[str]:

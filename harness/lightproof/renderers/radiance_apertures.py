@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from lightproof import geometry
-from lightproof.geometry import Cylinder, Polygon, Shape, Sphere
+from lightproof.geometry import Cylinder, Disk, Polygon, Shape, Sphere
 from lightproof.scene import AreaLight, CameraFilm, Film, PlaneFilm, PointLight, Scene, Surface
 
 ROOM = 1e-3  # of a round lamp's size: how far the box around it stands off
@@ -60,6 +60,17 @@ def outline(polygon: Polygon) -> list[float]:
     axes = np.stack(geometry.tangents(polygon.normal))
     flat = np.array([*polygon.vertices, polygon.vertices[0]]) @ axes.T
     return [*axes.ravel(), len(polygon.vertices), *flat.ravel()]
+
+
+def flatly(lamp: Shape, film: Film, cosine: float) -> bool:
+    """Whether a plane film sees a flat lamp at less than about this cosine, or reaches behind it. Of the box around a round lamp
+    a face that is seen flatly shows next to nothing."""
+    if not isinstance(film, PlaneFilm) or not isinstance(lamp, Polygon | Disk):
+        return False
+    normal, places = (lamp.normal, lamp.vertices) if isinstance(lamp, Polygon) else (geometry.unit(lamp.normal), [lamp.center])
+    (corners,) = _film(film)
+    ways = corners - np.mean(places, axis=0)
+    return bool((ways @ normal < cosine * np.linalg.norm(ways, axis=1)).any())
 
 
 def whole(scene: Scene) -> tuple[np.ndarray, float]:
