@@ -193,7 +193,7 @@ def test_small_things_are_made_large(tmp_path: Path) -> None:
 
 
 def test_a_lamp_seen_flatly_is_whole(tmp_path: Path) -> None:
-    """flux-closure:disk-south, a wall that sees the disk nearly from the side: within half a per cent. Of a disk cut into 64 parts
+    """flux-closure:disk-south, a wall that sees the disk nearly from the side: within half a per cent. Of a disk in 64 parts
     Radiance leaves out those that it sees at a cosine below 0.0064, and is 0.8 per cent too dark."""
     asked = SUITE.scene("flux-closure:disk-south")
     (answer,) = one_process.render("radiance", [Shot(asked, 1 << 20)], tmp_path)
