@@ -25,7 +25,7 @@ from lightproof.cli import main
 from lightproof.films import FilmError
 from lightproof.judging import Judge
 from lightproof.references import ReferenceError
-from lightproof.renderers import fields, manifest, protocol
+from lightproof.renderers import manifest, protocol
 from lightproof.renderers.protocol import AnswerError, FilmFile, Job
 from lightproof.renderers.registry import METHODS
 from lightproof.store import StoreError
@@ -173,8 +173,8 @@ READERS = {
     "scene": Reader(grafted(*(each.to_table() for each in suite.default().scenes())),
                     lambda table: scene_file.from_table(table, "a-scene"), (SceneError,)),
     "manifest file": Reader(mutated(MANIFEST_FILE), of_file("manifest.toml", manifest.read), (SceneError,)),
-    "manifest": Reader(grafted(MANIFEST), lambda table: fields.built(manifest.Manifest, table), (SceneError,)),
-    "job": Reader(grafted(JOB.to_table()), lambda table: fields.built(Job, table), (SceneError,)),
+    "manifest": Reader(grafted(MANIFEST), manifest.Manifest.from_table, (SceneError,)),
+    "job": Reader(grafted(JOB.to_table()), Job.from_table, (SceneError,)),
     "answer": Reader(grafted(ANSWER, {**ANSWER, "film": "file"}).map(as_json) | mutated(as_json(ANSWER)), read_answer,
                      (AnswerError, FilmError)),
     "film": Reader(mutated(film()), of_file("a-film.exr", films.read), (FilmError,)),

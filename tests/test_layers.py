@@ -12,6 +12,7 @@ SOURCE = Path(lightproof.__file__).parent
 LAYERS = [
     {"checked"},
     {"radiometry", "geometry", "statistics", "typed"},
+    {"lights", "receivers"},
     {"scene"},
     {"scene_file", "exr"},
     {"trial", "references", "films", "method", "sketch"},

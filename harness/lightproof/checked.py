@@ -10,8 +10,8 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any, ClassVar
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, ClassVar, Self
 
 SHORTEST, FARTHEST = 1e-150, 1e150  # m: a binary64 holds the squares of all lengths between
 LONGEST_LINE = 400
@@ -55,6 +55,28 @@ class Checked:
         values = ((field.name, getattr(self, field.name)) for field in dataclasses.fields(self))
         tag = dict([self.TAG]) if self.TAG else {}
         return {**tag, **{name: _plain(value) for name, value in values if value is not None}}
+
+    @classmethod
+    def from_table(cls, table: Any) -> Self:
+        """The object that a table describes, as `to_table` writes it; its tag may be left out. Raises SceneError, on unknown and
+        missing keys too."""
+        tag, value = cls.TAG or ("", None)
+        fields = dataclasses.fields(cls)
+        names = [field.name for field in fields]
+        only(table, [tag, *names] if tag else names, [field.name for field in fields if field.default is dataclasses.MISSING])
+        if table.get(tag, value) != value:
+            raise SceneError(tag, f"{shown(table[tag])} is not accepted; give {value!r}")
+        return cls(**{name: table[name] for name in names if name in table})
+
+
+def by_tag(table: Any, tag: str, classes: Mapping[str, Any]) -> Any:
+    """Which of some classes a table describes, by its `tag`, such as "kind". Raises SceneError."""
+    if not isinstance(table, dict):
+        raise SceneError("", f"{shown(table)} is not a table")
+    value = table.get(tag)
+    if not isinstance(value, str) or value not in classes:
+        raise SceneError(tag, f"{shown(value)} is not accepted; give one of {', '.join(map(repr, classes))}")
+    return classes[value]
 
 
 def _plain(value: Any) -> Any:

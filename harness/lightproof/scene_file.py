@@ -6,11 +6,10 @@ import copy
 import re
 import tomllib
 from collections.abc import Callable
-from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
-from lightproof import checked, geometry, scene
+from lightproof import checked, scene
 from lightproof.checked import SceneError
 from lightproof.scene import Scene
 
@@ -19,7 +18,8 @@ MAX_BYTES = 1 << 20
 MOST_PARTS = 32  # of a dotted key: tomllib takes minutes over thousands
 KEY_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 LONG_KEY = re.compile(rf"(?<![\w-]){KEY_PART}(?:[ \t]*+\.[ \t]*+{KEY_PART}){{{MOST_PARTS}}}")
-LIGHTS = {"area": scene.AreaLight, "point": scene.PointLight, "directional": scene.DirectionalLight}
+LIGHTS = {"area": scene.AreaLight, "point": scene.PointLight, "directional": scene.DirectionalLight,
+          "environment": scene.Environment}
 FILMS = {"plane": scene.PlaneFilm, "points": scene.PointsFilm, "camera": scene.CameraFilm}
 TOP = ("title", "tests", "tags", "max_bounces", "tolerance", "tolerance_scale", "light", "surface", "film")
 
@@ -82,8 +82,8 @@ def from_table(table: dict[str, Any], scene_id: str, case: str = BASE) -> Scene:
         tests=_field(table, "tests", checked.to_text, ""),
         tags=_field(table, "tags", _tags, ()),
         lights=_items(table, "light", _light),
-        surfaces=_items(table, "surface", lambda item: _build(scene.Surface, item, optional_tag=True)),
-        film=_field(table, "film", lambda film: _build(_kind(film, FILMS), film)),
+        surfaces=_items(table, "surface", scene.Surface.from_table),
+        film=_field(table, "film", lambda film: checked.by_tag(film, "kind", FILMS).from_table(film)),
         max_bounces=_field(table, "max_bounces", _bounces),
         tolerance=_field(table, "tolerance", _positive),
         tolerance_scale=_field(table, "tolerance_scale", _scale, "max"),
@@ -117,34 +117,10 @@ def _items(table: dict[str, Any], key: str, read: Callable[[Any], Any]) -> tuple
 
 
 def _light(item: Any) -> scene.Light:
-    if isinstance(item, dict) and item.get("kind") == "environment":
-        special = scene.SunDisc if "half_angle" in item else scene.OvercastSky if "sky" in item else scene.Environment
-        return _build(special, item)
-    return _build(_kind(item, {**LIGHTS, "environment": None}), item)
-
-
-def _kind(item: Any, kinds: dict[str, Any], tag: str = "kind") -> type:
-    if not isinstance(item, dict):
-        raise SceneError("", f"{checked.shown(item)} is not a table")
-    kind = item.get(tag)
-    if not isinstance(kind, str) or kind not in kinds:
-        raise SceneError(tag, f"{checked.shown(kind)} is not accepted; give one of {', '.join(map(repr, kinds))}")
-    return kinds[kind]
-
-
-def _build(cls: type, item: Any, optional_tag: bool = False) -> Any:
-    """An object of a Checked class from its table; unknown and missing keys are errors."""
-    if not isinstance(item, dict):
-        raise SceneError("", f"{checked.shown(item)} is not a table")
-    tag, expected = cls.TAG
-    if optional_tag and item.get(tag, expected) != expected:
-        raise SceneError(tag, f"{checked.shown(item[tag])} is not accepted; give {expected!r}")
-    names = [field.name for field in fields(cls)]
-    checked.only(item, (tag, *names), required=[field.name for field in fields(cls) if field.default is MISSING])
-    values = {key: item[key] for key in names if key in item}
-    if "shape" in values:
-        values["shape"] = _field(values, "shape", lambda shape: _build(_kind(shape, geometry.SHAPES, "type"), shape))
-    return cls(**values)
+    cls = checked.by_tag(item, "kind", LIGHTS)
+    if cls is scene.Environment:
+        cls = scene.SunDisc if "half_angle" in item else scene.OvercastSky if "sky" in item else cls
+    return cls.from_table(item)
 
 
 def _positive(value: Any) -> float:

@@ -13,17 +13,6 @@ from lightproof.checked import Checked, SceneError, rule, shown
 TEXT = {"type": "string", "minLength": 1}
 
 
-def built(cls: type[Checked], table: Any) -> Any:
-    """An object of a Checked class from its table; unknown and missing keys are errors."""
-    tag, value = cls.TAG or (None, None)
-    names = [field.name for field in dataclasses.fields(cls)]
-    needed = [field.name for field in dataclasses.fields(cls) if field.default is dataclasses.MISSING]
-    checked.only(table, [tag, *names] if tag else names, [tag, *needed] if tag else needed)
-    if tag and table[tag] != value:
-        raise SceneError(tag, f"{shown(table[tag])} is not accepted; give {value!r}")
-    return cls(**{name: table[name] for name in names if name in table})
-
-
 def def_name(cls: type) -> str:
     """The name of a class among the definitions of a schema: film-file for FilmFile."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", cls.__name__).lower()
@@ -32,7 +21,7 @@ def def_name(cls: type) -> str:
 def nested(cls: type[Checked], default: Any = dataclasses.MISSING) -> Any:
     """A field for an object of a Checked class, or the table of one."""
     name = {"$ref": f"#/$defs/{def_name(cls)}"}
-    return rule(lambda value: value if isinstance(value, cls) else built(cls, value), name, default)
+    return rule(lambda value: value if isinstance(value, cls) else cls.from_table(value), name, default)
 
 
 def several(value: Any, check: Callable[[Any], Any], least: int = 0) -> tuple[Any, ...]:

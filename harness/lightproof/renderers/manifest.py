@@ -92,7 +92,7 @@ def read(path: Path) -> Manifest | Version:
     Raises SceneError, which names the file, the field and what would be right."""
     try:
         table = scene_file.read_table(path, "manifest")
-        return fields.built(Version if "method" in table else Manifest, table)
+        return (Version if "method" in table else Manifest).from_table(table)
     except SceneError as error:
         raise SceneError(str(path), str(error)) from None
 

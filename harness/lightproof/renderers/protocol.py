@@ -120,7 +120,7 @@ def read_answer(line: bytes, job: Job) -> Rendering | Declined:
     """What a line says to a job. Raises AnswerError, and films.FilmError for a film file."""
     table = _parse(line)
     try:
-        answer = fields.built(Declined if isinstance(table, dict) and "unsupported" in table else Rendered, table)
+        answer = (Declined if isinstance(table, dict) and "unsupported" in table else Rendered).from_table(table)
     except SceneError as error:
         raise AnswerError(f"its answer is none of protocol {VERSION}: {error}") from None
     if answer.job != job.job:
