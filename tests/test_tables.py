@@ -17,7 +17,7 @@ RESULTS = """run, scene, case, method, version, settings, precision, threads, ma
 bias, bias_low, bias_high, worst_tile_bias, worst_tile_low, worst_tile_high, detectable_bias, tolerance, rmse, max_error,
 tessellation, seconds_setup, seconds_compile, seconds_render, samples_per_second, peak_memory_mb, message"""
 SUMMARY = """scene, case, method, outcome, samples, bias, bias_low, bias_high, detectable_bias, tolerance,
-seconds_to_1_percent, seconds_to_0_1_percent, slope, efficiency, message"""
+seconds_to_1_percent, seconds_to_0_1_percent, seconds_to_0_01_percent, slope, efficiency, message"""
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +91,13 @@ def test_time_to_an_error_is_that_of_the_samples_it_takes(written):
     """rms error 0.1/sqrt(N): 1 % at N = 100, 0.1 % at N = 10,000, beyond the 4,096 measured."""
     read = row(written["summary"], "floor", "mc-area")
     assert read.seconds_to_1_percent == pytest.approx(100 * 48 / small_run.SAMPLES_PER_SECOND, rel=0.1)
-    assert math.isnan(read.seconds_to_0_1_percent)
+    assert math.isnan(read.seconds_to_0_1_percent) and math.isnan(read.seconds_to_0_01_percent)
+
+
+def test_an_exact_film_is_at_every_error_with_its_first_step(written):
+    """analytic on the floor: 64 x 48 samples, whatever the error."""
+    read = row(written["summary"], "floor", "analytic")
+    assert read.seconds_to_1_percent == read.seconds_to_0_01_percent == 64 * 48 / small_run.SAMPLES_PER_SECOND
 
 
 def test_efficiency_is_one_over_variance_times_seconds(written):

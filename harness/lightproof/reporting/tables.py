@@ -20,7 +20,7 @@ RESULTS = (
 )  # fmt: skip
 SUMMARY = (
     "scene", "case", "method", "outcome", "samples", "bias", "bias_low", "bias_high", "detectable_bias", "tolerance",
-    "seconds_to_1_percent", "seconds_to_0_1_percent", "slope", "efficiency", "message",
+    "seconds_to_1_percent", "seconds_to_0_1_percent", "seconds_to_0_01_percent", "slope", "efficiency", "message",
 )  # fmt: skip
 COUNTS = ("samples", "replicates", "threads", "seed")
 OF_STEP = (
@@ -79,6 +79,7 @@ def _summary(cell: Cell) -> dict[str, Any]:
         "tolerance": cell.verdict.tolerance,
         "seconds_to_1_percent": cell.seconds_to(0.01),
         "seconds_to_0_1_percent": cell.seconds_to(0.001),
+        "seconds_to_0_01_percent": cell.seconds_to(0.0001),
         "slope": cell.slope[0],
         "efficiency": cell.efficiency,
         "message": cell.verdict.reason,
