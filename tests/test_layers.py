@@ -10,7 +10,7 @@ import lightproof
 SOURCE = Path(lightproof.__file__).parent
 
 LAYERS = [
-    {"checked"},
+    {"checked", "quiet"},
     {"radiometry", "geometry", "statistics", "typed"},
     {"lights", "receivers"},
     {"scene"},

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import contextlib
 import io
-import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from lightproof.quiet import quiet
 
 PIXELS, VALUES = 1 << 25, 1 << 28  # in one file, twice the largest film's; a header that claims more is not followed
 LUMINANCE, COLOUR = ("Y",), ("R", "G", "B")  # Y beside X is no luminance, but a part of a vector
@@ -65,7 +66,7 @@ def read(path: Path) -> Image:
     if not path.is_file():
         raise FilmError(f"{path}: there is no such file; give the path of an OpenEXR image")
     try:
-        with _quiet():
+        with quiet(2), contextlib.redirect_stdout(io.StringIO()):  # where the library reports what it then raises, or leaves out
             return _read(path)
     except FilmError:
         raise
@@ -142,17 +143,3 @@ def _shown(path: Path, pixels: np.ndarray, data: Window, display: Window) -> np.
     shown[y.start - top:y.stop - top, x.start - left:x.stop - left] = \
         pixels[y.start - data[1]:y.stop - data[1], x.start - data[0]:x.stop - data[0]]
     return shown
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Nothing on standard output and file descriptor 2: the library reports there what it then raises, or leaves out."""
-    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    try:
-        with contextlib.redirect_stdout(io.StringIO()):
-            yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-        os.close(nowhere)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from lightproof.method import Method, Rendering
+from lightproof.quiet import quiet
 from lightproof.renderers import cycles_scene, importing, mesh, options, tessellation, transport, views
 from lightproof.renderers.views import View
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, Environment, PointLight, Scene
@@ -63,7 +63,7 @@ class Cycles(Method):
         self.configuration = options.chosen(name, CONFIGURATIONS)
 
     def open(self) -> None:
-        with _quiet():
+        with quiet(1):
             self.bpy = importing.renderer("bpy", "cycles")
         memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
         self.folder = tempfile.TemporaryDirectory(prefix="lightproof-", dir=memory)
@@ -107,6 +107,7 @@ class Cycles(Method):
         start = time.perf_counter()
         self.bpy.ops.wm.read_factory_settings(use_empty=True)
         self.bounces = max(transport.reflections(scene, BOUNCES) - isinstance(scene.film, CameraFilm), 0)
+        self.certain = min(transport.certain(scene), self.bounces)  # then Russian roulette
         self.lamps = {LAMPS: True, MESHES: False, FITTING: _lamps_fit(scene)}[self.configuration.emitters]
         self.views = views.views(scene)
         world = cycles_scene.world(self.bpy, [light for light in scene.lights if isinstance(light, Environment)])
@@ -148,7 +149,7 @@ class Cycles(Method):
     def _configure(self, made: Any, view: View) -> None:
         columns, rows = (count * _block(view) for count in view.resolution)
         wide = (view.half[0] / columns) / (view.half[1] / rows)
-        bounces = dict.fromkeys(("max_bounces", "diffuse_bounces", "min_light_bounces"), self.bounces)
+        bounces = {"max_bounces": self.bounces, "diffuse_bounces": self.bounces, "min_light_bounces": self.certain}
         size = {"resolution_x": columns, "resolution_y": rows, "resolution_percentage": 100, "threads": self.threads,
                 "pixel_aspect_x": max(wide, 1.0), "pixel_aspect_y": max(1 / wide, 1.0)}
         cycles = {**CYCLES, **self.configuration.changes, **bounces}
@@ -161,7 +162,7 @@ class Cycles(Method):
 
         path = Path(self.folder.name) / "film.exr"
         made.cycles.samples, made.cycles.seed, made.render.filepath = samples, int(seed), str(path)
-        with _quiet():
+        with quiet(1):  # every render is reported there
             self.bpy.ops.render.render(write_still=True, scene=made.name)
         with OpenEXR.File(str(path)) as file:
             return np.array(file.channels()["RGB"].pixels[:, :, 0], float)
@@ -176,16 +177,3 @@ def _lamps_fit(scene: Scene) -> bool:
 def _block(view: View) -> int:
     """Pixels along each side of a film element."""
     return math.ceil(SMALLEST / min(view.resolution))
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Nothing on file descriptor 1: Blender reports every render there."""
-    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 1)
-        os.close(kept)
-        os.close(nowhere)
