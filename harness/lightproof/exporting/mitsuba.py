@@ -15,8 +15,8 @@ import numpy as np
 from lightproof import exporting, geometry
 from lightproof.exporting import numbers
 from lightproof.geometry import Cap, Cylinder, Disk, Polygon, Shape, Sphere
-from lightproof.renderers import mesh
-from lightproof.renderers.mitsuba import FAR, SKY_ROWS
+from lightproof.renderers import half_sky, mesh
+from lightproof.renderers.mitsuba import FAR
 from lightproof.renderers.mitsuba_configurations import caveat, integrator
 from lightproof.renderers.views import View, pose
 from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, PointLight, Scene, Surface
@@ -100,9 +100,7 @@ def _light(root: ET.Element, light: Light, path: Path) -> None:
 
 
 def _half_sky(root: ET.Element, light: Environment, path: Path) -> None:
-    sky = np.zeros((SKY_ROWS, 4), np.float32)
-    sky[: SKY_ROWS // 2] = light.radiance
-    write_grey(sky, path)
+    write_grey(half_sky.picture(light.radiance), path)
     upright = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
     _placed(_plugin(root, "emitter", "envmap", filename=path.name), upright)
 

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from lightproof.geometry import Sphere
-from lightproof.renderers import mesh, transport
+from lightproof.renderers import half_sky, mesh, transport
 from lightproof.renderers.mesh import Mesh
 from lightproof.renderers.views import View
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, Environment, Light, PointLight, Scene, Surface
 
-SKY_ROWS = 2**11  # of the map of half a sky, whose horizon is blurred over one row
 FAR = 1e6  # clip distance [m]
+LAMP_CORNERS = 256  # of a round lamp's circle: among 1,024 triangles to choose from, Sobol's points have lost their evenness
 RECTANGLE = np.array([[0, 1, 2], [0, 2, 3]])
 
 
@@ -43,13 +43,13 @@ class Stage:
             case Environment(extent="sphere"):
                 self._lamp(light.id, "constantinfinite", light.radiance)
             case Environment():
-                self.images[light.id] = np.repeat(np.float32([[1] * 4, [0] * 4]), SKY_ROWS // 2, axis=0)
+                self.images[light.id] = half_sky.picture(1)
                 self._lamp(light.id, "infinite", light.radiance, file=light.id)
             case AreaLight(shape=Sphere() as ball) if light.id in self.lamps:
                 power = 4 * np.pi**2 * ball.radius**2 * light.radiance
                 self._lamp(light.id, "sphere", power, position=list(ball.center), radius=ball.radius)
             case AreaLight():
-                self._body(light.id, mesh.tessellate(light.shape), 0.0, light.radiance)
+                self._body(light.id, mesh.tessellate(light.shape, corners=LAMP_CORNERS), 0.0, light.radiance)
 
     def surface(self, surface: Surface) -> None:
         """Add a surface that reflects and may emit. One that emits inward is not aimed at: it is wherever one looks."""
@@ -111,12 +111,12 @@ def seen(view: View, block: int = 1) -> Stage:
 
 
 def configuration(scene: Scene) -> dict[str, Any]:
-    """All reflections that matter, no Russian roulette, no clamping, no filter; the raw picture."""
+    """All reflections that matter, Russian roulette for faint paths alone, no clamping, no filter; the raw picture."""
     depth = transport.edges(scene)
     return {
         **dict.fromkeys((f"path.pathdepth.{kind}" for kind in ("total", "diffuse", "glossy", "specular")), depth),
         "path.maxdepth": depth, "light.maxdepth": depth,  # the bidirectional tracer's
-        "path.russianroulette.depth": depth + 1,
+        "path.russianroulette.depth": depth + 1 - transport.reflections(scene) + transport.certain(scene),
         "path.clamping.variance.maxvalue": 0,
         "lightstrategy.type": "UNIFORM",
         "sampler.sobol.adaptive.strength": 0, "sampler.random.adaptive.strength": 0,

@@ -16,14 +16,13 @@ from typing import Any
 import numpy as np
 
 from lightproof.method import Method, Rendering
-from lightproof.renderers import importing, mitsuba_configurations, mitsuba_shapes, options, transport, views
+from lightproof.renderers import half_sky, importing, mitsuba_configurations, mitsuba_shapes, options, transport, views
 from lightproof.renderers.mitsuba_configurations import CONFIGURATIONS, integrator
 from lightproof.renderers.views import View
 from lightproof.scene import AreaLight, DirectionalLight, Environment, Light, PointLight, Scene, Surface
 
 PASS = 1024  # samples per pass: the film adds up in float32 and is off by 5e-5 after 4,096 samples
 WAVEFRONT = 2**24  # paths at a time
-SKY_ROWS = 2**11  # of the map of half a sky, whose horizon is blurred over one row
 BAND = 400, 700  # nm: a flat band, over which spectral radiance is spread and the spectral variant's film adds up
 FAR = 1e4  # m: Mitsuba's own far clip, beyond which only scenes seen from farther away go
 LLVM = "karellen-llvm-core"
@@ -138,8 +137,7 @@ class Mitsuba(Method):
                 return self._half_sky(light.radiance)
 
     def _half_sky(self, radiance: float) -> dict[str, Any]:
-        rows = np.zeros((SKY_ROWS, 4, 3), np.float32)
-        rows[: SKY_ROWS // 2] = radiance
+        rows = np.repeat(half_sky.picture(radiance)[..., None], 3, axis=2)
         upright = self.mi.ScalarTransform4f().rotate([1, 0, 0], 90)
         return {"type": "envmap", "bitmap": self.mi.Bitmap(rows), "to_world": upright}
 
