@@ -17,12 +17,10 @@ from lightproof import api, machine, plan, store
 from lightproof.judging import Judge
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS, Entry
-from lightproof.runner import FIRST_SAMPLES, MOST_SAMPLES, Cell, Runner
+from lightproof.runner import FIRST_SAMPLES, MOST_SAMPLES, REPLICATES, Cell, Runner
 from lightproof.scene import Scene
 from lightproof.suite import Suite
 from lightproof.verdict import Outcome, Verdict
-
-REPLICATES = 16
 
 
 def check(judged: Any, scene: Scene | str, samples: int = MOST_SAMPLES, budget: float = 300.0) -> Verdict:

@@ -17,7 +17,7 @@ from lightproof.judging import Judge
 from lightproof.references import Reference
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS, Entry
-from lightproof.runner import FACTOR, FIRST_SAMPLES, Cell, Progress, Runner
+from lightproof.runner import FACTOR, FIRST_SAMPLES, REPLICATES, Cell, Progress, Runner
 from lightproof.scene import Scene
 from lightproof.store import Store
 from lightproof.suite import Suite
@@ -25,7 +25,6 @@ from lightproof.trial import Result
 from lightproof.verdict import Outcome, Verdict
 
 SEEDS = (0, 1)  # of the draw and of the one that confirms it
-REPLICATES = 16
 CELL_SECONDS = 300.0  # a cell that takes longer hangs; nothing else here depends on the clock
 LEVEL = 0.001  # chance that equal variances are told apart, at one draw
 BEST_FIRST = (Outcome.PASS, Outcome.UNDECIDED, Outcome.UNSUPPORTED, Outcome.NO_REFERENCE, Outcome.ERROR, Outcome.FAIL)

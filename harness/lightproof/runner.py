@@ -20,6 +20,7 @@ from lightproof.trial import Result, Status, Trial
 
 FIRST_SAMPLES = 64
 FACTOR = 4
+REPLICATES = 16  # films a step, which the rule of the verdict is made for
 MOST_SAMPLES = 2**30
 STEPS_FOR_A_SLOPE = 3
 SLOPE_CAN_WAIT = 4  # a step that serves only the slope gives way to one for a verdict that costs up to so many times as much

@@ -18,6 +18,7 @@ from lightproof.cli.status import INCOMPLETE
 from lightproof.exporting import CannotExport
 from lightproof.grading import METHOD, Reading
 from lightproof.judging import Judge, homes
+from lightproof.runner import REPLICATES
 from lightproof.scene import Scene
 from lightproof.store import Store
 from lightproof.suite import Suite
@@ -25,7 +26,6 @@ from lightproof.trial import Result
 from lightproof.verdict import Outcome, Verdict
 
 GRADES = Path("reports/grades")
-REPLICATES = 16
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

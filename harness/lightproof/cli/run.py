@@ -20,7 +20,7 @@ from lightproof.method import Unavailable
 from lightproof.renderers.pool import MethodFailed, Pool
 from lightproof.renderers.process import WorkerDied
 from lightproof.renderers.registry import Entry
-from lightproof.runner import Runner
+from lightproof.runner import REPLICATES, Runner
 from lightproof.store import Store
 from lightproof.suite import Suite
 from lightproof.verdict import Outcome, Verdict
@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="scenes with one of these; nightly: every case of every scene, every configuration")
     add("--budget", type=seconds, default=250.0, metavar="S", help="of the whole run (default: %(default)g s)")
     add("--cell-budget", type=seconds, default=60.0, metavar="S", help="of a scene and method (default: %(default)g s)")
-    add("--replicates", type=count(2), default=16, metavar="N", help="films a step (default, and the rule's: %(default)s)")
+    add("--replicates", type=count(2), default=REPLICATES, metavar="N", help="films a step (default: the rule's %(default)s)")
     add("--threads", type=count(1), default=machine.usable_cores(), metavar="N", help="default: all cores, %(default)s here")
     add("--seed", type=count(0), default=0, metavar="N", help="another seed, other noise (default: %(default)s)")
     add("--out", type=Path, default=RUNS, metavar="DIR", help="where the run's folder is made (default: %(default)s)")
