@@ -109,7 +109,7 @@ def test_a_light_without_area_gives_nothing(tmp_path, method, vertices):
     floor = {"kind": "plane", "quantity": "irradiance", "origin": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1, 0], "resolution": [2, 2]}
     host = Host()
     host.open(method, METHODS[method].target, 1)
-    for film in (None, floor):
+    for film in (None, floor)[:1 if method == "textbook" else 2]:  # its formulas are for points
         scene = table([lamp(vertices)], film=film)
         assert "unsupported" not in host.prepare(method, "test", "base", scene)
         host.render(method, 64, 1, str(tmp_path / "film.exr"))

@@ -1,7 +1,8 @@
 """Films as OpenEXR: 32-bit float channels that tev and Blender open, with what the film is in the header.
 
 Channel Y is the film. A method that computes in float64 keeps its digits: `residual` is what rounding Y to float32 left
-out. `variance`, `quantization` and `tessellation` are there where the method knows them.
+out, and `residual2` what rounding that did. `variance`, `quantization`, `tessellation` and `peak` are there where the
+method knows them.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ import numpy as np
 from lightproof import exr
 from lightproof.exr import FilmError
 
-EXTRAS = ("variance", "quantization", "tessellation")
+RESIDUALS = ("residual", "residual2")
+EXTRAS = ("variance", "quantization", "tessellation", "peak")
 PARTIAL = ".partial"  # what a film is called until it is whole
 
 
@@ -24,12 +26,13 @@ def write(path: Path, grid: tuple[int, int], channels: Mapping[str, np.ndarray],
     """Write (n,) arrays as channels of a rows x columns image, whole or not at all: first beside `path`, then renamed."""
     import OpenEXR
 
-    planes = {}
-    for name, values in channels.items():
-        values = np.asarray(values, float)
-        planes[name] = values.astype(np.float32)
-        if name == "Y" and np.isfinite(planes[name]).all():
-            planes["residual"] = (values - planes[name]).astype(np.float32)
+    with np.errstate(over="ignore"):
+        planes = {name: np.asarray(values, float).astype(np.float32) for name, values in channels.items()}
+    if np.isfinite(planes["Y"]).all():
+        left = np.asarray(channels["Y"], float) - planes["Y"]
+        for name in RESIDUALS:
+            planes[name] = np.asarray(left, np.float32)
+            left = left - planes[name]
     images = {name: np.ascontiguousarray(plane.reshape(grid)) for name, plane in planes.items()}
     about = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, "lightproof": _version(), **header}
     partial = path.with_suffix(PARTIAL)
@@ -50,7 +53,7 @@ def read(path: Path, channel: str = "") -> tuple[tuple[int, int], dict[str, np.n
     chosen = [_numbers(image, name) for name in names]
     found = {"Y": np.mean(chosen, axis=0)}
     if names == ("Y",):
-        found["Y"] = found["Y"] + image.channels.get("residual", 0.0)
+        found["Y"] = sum((image.channels[name] for name in RESIDUALS if name in image.channels), found["Y"])
         found |= {name: _numbers(image, name) for name in EXTRAS if name in image.channels}
     steps = np.mean([np.broadcast_to(exr.half_step(image.channels[name]), found["Y"].shape) for name in names], axis=0)
     if steps.any():

@@ -66,8 +66,9 @@ def _find_noiseless(rung: Rung, before: Rung | None) -> Finding:
         return Finding(Outcome.FAIL, f"{_accusation(rung, confirmed)} at two steps")
     converging = before is not None and rung.votes.any()
     doubt = f"still converging: {_accusation(rung, rung.votes)}" if converging else _doubt(rung)
-    blurred = (rung.uncertainty >= rung.tolerance).any()
-    return Finding(Outcome.UNDECIDED, doubt, None if blurred else ladder.FACTOR * rung.samples)
+    needed = max(ladder.FACTOR * rung.samples, rung.unseen.max())
+    hopeless = (rung.uncertainty >= rung.tolerance).any() or np.isinf(needed)
+    return Finding(Outcome.UNDECIDED, doubt, None if hopeless else int(needed))
 
 
 def _find_noisy(rung: Rung, before: Rung | None) -> Finding:
@@ -115,6 +116,8 @@ def _doubt(rung: Rung) -> str:
     tiles = rung.scale.tiles
     if rung.votes.any():
         return f"unconfirmed: {_accusation(rung, rung.votes)} at one step"
+    if rung.unseen.any():
+        return _blindness(rung)
     if rung.unlit[:tiles].any():
         return f"no sample has reached the light in {np.count_nonzero(rung.unlit[:tiles])} of {tiles} tiles"
     worst = int(np.argmax(rung.reach[:tiles + 1]))
@@ -122,6 +125,15 @@ def _doubt(rung: Rung) -> str:
         blur = f"±{100 * rung.uncertainty[worst]:.2g} %"
         return f"no number of samples decides: the output's steps leave {blur}, tolerance {100 * rung.tolerance:g} %"
     return f"{rung.scale.place(worst)} is off by {_interval(rung, worst)}, tolerance {100 * rung.tolerance:g} %"
+
+
+def _blindness(rung: Rung) -> str:
+    """What lies outside the tolerance, and why its scatter proves nothing."""
+    worst = int(np.argmax(rung.unseen))
+    leap = "without bound" if np.isinf(rung.leap[worst]) else f"by up to {100 * rung.leap[worst]:.2g} %"
+    return (f"{rung.scale.place(worst)} is off by {_interval(rung, worst)}, yet a single sample could move it {leap}, so that what"
+            " no sample met cannot be told from what is not there; samples of the light's solid angle, as mc-solid-angle draws"
+            " them, are bounded")
 
 
 def _interval(rung: Rung, index: int) -> str:

@@ -197,16 +197,44 @@ class Rung:
         return unlit
 
     @cached_property
-    def votes(self) -> np.ndarray:
-        """-1 or +1 where an interval votes for a bias below or above the tolerance, else 0, (J + 1 + n,)."""
+    def leap(self) -> np.ndarray:
+        """How far a single sample could have moved each bias at most, (J + 1 + n,); 0 where the method does not know. Where that
+        is far, what scatter there is says little: the samples that matter are too rare to have been seen."""
+        known = [result.peak for result in self.results if result.peak is not None]
+        if not known:
+            return np.zeros_like(self.bias)
+        films = self.results[:1] if self.noiseless else self.results
+        elements = np.max(known, axis=0) / self.scale.unit / sum(film.samples for film in films)
+        return np.concatenate([statistics.tile_shares(elements, self.scale.grid), [elements.max() / len(elements)], elements])
+
+    @property
+    def blind(self) -> np.ndarray:
+        """Where a single sample could have moved the bias by more than the tolerance, (J + 1 + n,)."""
+        return self.leap > self.tolerance
+
+    @property
+    def unseen(self) -> np.ndarray:
+        """Samples at which no single one could move the bias by more than the tolerance, (J + 1 + n,): infinite where a sample
+        knows no bound, 0 where the interval does not lie outside the tolerance or the samples are enough."""
+        return np.where(self.blind & (self.outside != 0), np.ceil(self.samples * self.leap / self.tolerance), 0)
+
+    @cached_property
+    def suspects(self) -> np.ndarray:
+        """-1 or +1 where an interval lies wholly below or above the tolerance and noise leaves it narrow, else 0,
+        (J + 1 + n,)."""
         steady = self.noiseless | ((self.standard_error > 0) & (self.noise <= WIDEST_VOTE * self.tolerance))
         return self.outside * (steady & ~(self.unlit & (self.bias < 0)))
 
     @property
+    def votes(self) -> np.ndarray:
+        """-1 or +1 where an interval votes for a bias below or above the tolerance, else 0, (J + 1 + n,)."""
+        return self.suspects * ~self.blind
+
+    @property
     def passes(self) -> bool:
-        """Whether every tile and the mean lie inside the tolerance (every element, without noise) and no element votes."""
+        """Whether every tile and the mean lie inside the tolerance (every element, without noise) and no element is suspect."""
         judged = self.reach if self.noiseless else self.reach[:self.scale.tiles + 1]
-        return bool((judged <= self.tolerance).all()) and not self.votes.any()
+        return bool((judged <= self.tolerance).all()) and not self.suspects.any()
 
     @property
     def detectable_bias(self) -> float:
@@ -217,13 +245,15 @@ class Rung:
     @property
     def samples_needed(self) -> int | None:
         """Samples at which noise would let this noisy step's intervals into the tolerance, at least those of the next step;
-        None where no number of samples can be told to, for an interval without noise lies outside or U alone is too wide."""
+        None where no number of samples can be told to, for an interval without noise lies outside, U alone is too wide or a
+        single sample knows no bound."""
         tiles = slice(0, self.scale.tiles + 1)
-        hopeless = (self.standard_error == 0) & (self.reach > self.tolerance) | (self.uncertainty >= self.tolerance)
-        if hopeless[tiles].any():
+        hopeless = (self.standard_error == 0) & (self.reach > self.tolerance) & ~self.blind | (self.uncertainty >= self.tolerance)
+        if hopeless[tiles].any() or np.isinf(self.unseen).any():
             return None
         excess = ((self.quantile + POWER) * self.standard_error)[tiles].max() / self.tolerance
-        return int(np.ceil(self.samples * excess**2)) if excess > 1 else FACTOR * self.samples
+        by_noise = np.ceil(self.samples * excess**2) if excess > 1 else FACTOR * self.samples
+        return int(max(by_noise, self.unseen.max()))
 
     @property
     def rmse(self) -> float:

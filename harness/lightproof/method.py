@@ -30,6 +30,7 @@ class Rendering:
     variance: np.ndarray | None = None
     quantization: np.ndarray | float = 0.0
     seconds: Mapping[str, float] = field(default_factory=dict)
+    peak: np.ndarray | None = None
 
 
 class Method(ABC):

@@ -44,11 +44,20 @@ def tile_starts(grid: tuple[int, int], most: int = TILES) -> tuple[np.ndarray, n
 
 def tile_means(values: np.ndarray, grid: tuple[int, int], most: int = TILES) -> np.ndarray:
     """Means (..., J) over the tiles of films (..., n), tiles row-major. A grid's elements have equal areas."""
+    return _over_tiles(values, grid, most, np.add)
+
+
+def tile_shares(values: np.ndarray, grid: tuple[int, int], most: int = TILES) -> np.ndarray:
+    """The most that any one element adds to the mean over its tile (..., J), of films (..., n)."""
+    return _over_tiles(values, grid, most, np.maximum)
+
+
+def _over_tiles(values: np.ndarray, grid: tuple[int, int], most: int, gather: np.ufunc) -> np.ndarray:
     rows, columns = tile_starts(grid, most)
     image = values.reshape(*values.shape[:-1], *grid)
-    sums = np.add.reduceat(np.add.reduceat(image, rows, axis=-2), columns, axis=-1)
+    gathered = gather.reduceat(gather.reduceat(image, rows, axis=-2), columns, axis=-1)
     counts = np.outer(np.diff(rows, append=grid[0]), np.diff(columns, append=grid[1]))
-    return (sums / counts).reshape(*values.shape[:-1], -1)
+    return (gathered / counts).reshape(*values.shape[:-1], -1)
 
 
 def repeats(films: np.ndarray) -> bool:

@@ -47,8 +47,9 @@ class Trial:
 class Result:
     """What came of a trial. `film` (n,) and `variance` (n,) [unit squared; that of the element's value, already divided by
     samples] are row-major; `quantization` is half a step of the output [unit], (n,) or 0; `tessellation` (n,) [unit] is what
-    triangles in the place of round shapes change at most, infinite where that is not known, None without triangles; `samples`
-    is what was really spent per element; `seconds` has the phases setup, compile and render."""
+    triangles in the place of round shapes change at most, infinite where that is not known, None without triangles; `peak` (n,)
+    [unit] is the largest value that one sample can have, infinite where there is none, None where the method does not know it;
+    `samples` is what was really spent per element; `seconds` has the phases setup, compile and render."""
 
     trial: Trial
     status: Status
@@ -56,6 +57,7 @@ class Result:
     variance: np.ndarray | None = None
     quantization: np.ndarray | float = 0.0
     tessellation: np.ndarray | None = None
+    peak: np.ndarray | None = None
     samples: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
     version: str = ""

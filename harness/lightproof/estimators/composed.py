@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from lightproof.estimators import world
+from lightproof.estimators import peaks, world
 from lightproof.estimators.estimator import Estimator
 from lightproof.estimators.pieces import Piece
 from lightproof.estimators.views import View, view
@@ -24,6 +24,7 @@ class Composed(Estimator):
         seen = self.seen(scene)
         self.pieces = self.sources(scene, seen) if seen else []
         self.view = seen if self.pieces else None  # where nothing shines, rays find nothing
+        self.peaks = [peaks.peak(seen, piece.lamp) for piece in self.pieces]
         self.precision = np.dtype(self.real).name if self.view else "float64"
         self.world = None if self.view else world.build(scene)
 

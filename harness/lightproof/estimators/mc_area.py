@@ -7,6 +7,7 @@ import numpy as np
 from lightproof.estimators.estimator import sampled
 from lightproof.estimators.limits import no_caps, no_cylinders, no_glowing_inside, no_reflections, no_skies, no_solid_angle
 from lightproof.estimators.paths import Paths
+from lightproof.estimators.peaks import largest
 from lightproof.estimators.pieces import Piece, aimed
 from lightproof.estimators.sampling import Sampling
 from lightproof.estimators.views import View
@@ -38,7 +39,9 @@ class McArea(Sampling):
     def composed(self, samples: int, seed: int) -> Rendering:
         drawn = [self.drawn(index, count, seed) for index, count in enumerate(self.counts(samples))]
         films, counts, variances = zip(*drawn, strict=True)
-        return Rendering(sum(films), sum(counts), None if any(one is None for one in variances) else sum(variances))
+        variance = None if any(one is None for one in variances) else sum(variances)
+        peak = largest(self.peaks, np.array(counts) / sum(counts))
+        return Rendering(sum(films), sum(counts), variance, peak=peak)
 
     def counts(self, samples: int) -> list[int]:
         """Samples are shared out over the lights' pieces by power."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from lightproof.estimators.composed import Composed
 from lightproof.estimators.estimator import spread
+from lightproof.estimators.peaks import largest
 from lightproof.estimators.points import Grid
 from lightproof.method import Rendering
 from lightproof.scene import Scene
@@ -34,7 +35,8 @@ class Riemann(Composed):
     def composed(self, samples: int, seed: int) -> Rendering:
         cut = self.grid(samples)
         sums = [piece.sums(self.view, cut, self.real(1), self.threads) for piece in self.pieces]
-        return Rendering(self.view.factor * sum(pivots + totals for pivots, totals, _ in sums) / cut.samples, cut.samples)
+        film = self.view.factor * sum(pivots + totals for pivots, totals, _ in sums) / cut.samples
+        return Rendering(film, cut.samples, peak=largest(self.peaks, np.ones(len(self.pieces))))
 
     def traced(self, samples: int, seed: int) -> Rendering:
         cut = self.grid(samples)

@@ -161,11 +161,11 @@ def _placed_flat(kind):
 PLACED = {kind: _placed_flat(kind) for kind in (Parallelogram, Triangle, Disk)}
 
 
-def support(part: Flat | Sphere, direction: np.ndarray) -> float:
-    """The largest coordinate along `direction` (3,), a unit vector, of any point of the part [m]."""
-    center = float(np.dot(part.center, direction))
+def support(part: Flat | Sphere, direction: np.ndarray) -> np.ndarray:
+    """The largest coordinate along each `direction` (..., 3), unit vectors, of any point of the part (...) [m]."""
+    center = np.dot(direction, part.center)
     if isinstance(part, Sphere):
         return center + part.radius
-    s, t = float(np.dot(part.u, direction)), float(np.dot(part.v, direction))
-    reach = {Parallelogram: (abs(s) + abs(t)) / 2, Triangle: max(0.0, s, t), Disk: np.hypot(s, t)}[type(part)]
-    return center + float(reach)
+    s, t = np.dot(direction, part.u), np.dot(direction, part.v)
+    reaches = {Parallelogram: (np.abs(s) + np.abs(t)) / 2, Triangle: np.maximum(np.maximum(s, t), 0), Disk: np.hypot(s, t)}
+    return center + reaches[type(part)]

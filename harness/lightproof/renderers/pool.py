@@ -20,6 +20,7 @@ from lightproof.trial import Result, Status, Trial
 
 PATIENCE = 60.0
 PREPARING = 5  # times the patience: to compile may take a minute of a machine that has nothing else to do
+UNBOUNDED = ("tessellation", "peak")  # channels that may be infinite
 DOING = {"open": "starting the renderer", "prepare": "preparing the scene", "render": "rendering"}
 
 
@@ -138,6 +139,7 @@ class Pool:
             variance=channels.get("variance"),
             quantization=channels.get("quantization", 0.0),
             tessellation=channels.get("tessellation"),
+            peak=channels.get("peak"),
             samples=answer["samples"],
             seconds={**prepared.seconds, **answer["seconds"]},
             version=about.version,
@@ -195,14 +197,14 @@ class Pool:
 
 def read_film(path: Path, scene: Scene) -> dict[str, np.ndarray]:
     """The channels of a film, (n,) each. Raises FilmError where it is no film of `scene`, or not finite, or negative; only what
-    triangles change may be infinite, which means that it is not known."""
+    triangles change and what one sample can add may be infinite: not known, and not bounded."""
     grid, channels, header = films.read(path)
     if header.get("digest") != scene.digest:
         raise FilmError(f"{path}: its header names another scene (digest {header.get('digest')}); it must be {scene.digest}")
     if grid != scene.film.grid:
         raise FilmError(f"{path}: has {grid} rows and columns; it must have {scene.film.grid}")
     for name, values in channels.items():
-        wrong = np.flatnonzero(~((values >= 0) & (np.isfinite(values) | (name == "tessellation"))))
+        wrong = np.flatnonzero(~((values >= 0) & (np.isfinite(values) | (name in UNBOUNDED))))
         if wrong.size:
             first = f"the first {values[wrong[0]]:g} in element {wrong[0]}"
             raise FilmError(f"{path}: {wrong.size} of {values.size} values of {name} are no light, {first};"

@@ -60,6 +60,8 @@ METHODS = {
         *_sampling("mc-mis", "mc_mis:McMis", nightly=True),
         _ours("path", "path:Path"),
         _ours("path/no-next-event", "path:Path", nightly=True),
+        _ours("textbook", "textbook:Textbook", nightly=True),
+        _ours("textbook/float32", "textbook:Textbook", nightly=True),
         Entry("mitsuba", "lightproof.renderers.mitsuba:Mitsuba", worker="mitsuba", extra="mitsuba"),
         _mitsuba("scalar", worker="mitsuba-scalar"),
         _mitsuba("spectral", worker="mitsuba-spectral"),

@@ -1,0 +1,112 @@
+"""The largest value that one sample of a light's area can have, L A cos(theta_x) cos(theta_y) / d^2: it grows without bound as
+a receiver comes close to the light. Bounds from the geometry alone, for elements with and without extent.
+
+`rows` (n, 15) are elements as `elements` has them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import singledispatch
+
+import numpy as np
+
+from lightproof.estimators.elements import CELL, CENTER, NORMAL
+from lightproof.estimators.lamps import Beam, Lamp, Point
+from lightproof.estimators.shapes import Disk, Flat, Sphere, Triangle, support
+from lightproof.estimators.views import COVERS, View
+
+Bounds = Sequence[np.ndarray | None]
+
+
+def largest(bounds: Bounds, shares: Sequence[float]) -> np.ndarray | None:
+    """What one sample of a film can add at most (n,), where each source has a share of the samples; None where one of the
+    `bounds` on sources is not known."""
+    if any(bound is None for bound in bounds):
+        return None
+    return np.max([bound / share for bound, share in zip(bounds, shares, strict=True)], axis=0)
+
+
+def peak(view: View, source: object) -> np.ndarray | None:
+    """Bound (n,) on one sample of a source, per element [unit of the film]: infinite where an element touches the light, None
+    where the source is no light's area, and where a camera's perspective stretches the elements."""
+    if view.slopes is not None or not isinstance(source, Lamp | Point | Beam):
+        return None
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        values = of_source(source, view.receivers)
+    return view.factor * source.strength * np.where(np.isnan(values), 0, values)  # 0/0: it touches what it does not see
+
+
+def of_source(source: Lamp | Point | Beam, rows: np.ndarray) -> np.ndarray:
+    """The bound for a `strength` of 1."""
+    if isinstance(source, Beam):
+        return np.ones(len(rows))
+    if isinstance(source, Point):
+        return nearest(np.linalg.norm(rows[:, CENTER] - source.position, axis=1), rows) ** -2.0
+    return of_shape(source.shape, rows)
+
+
+@singledispatch
+def of_shape(shape: Flat, rows: np.ndarray) -> np.ndarray:
+    """min(1, h/d) min(1, H/d) / d^2 of a flat light: d is the distance, h the receiver's height over the light's plane, H the
+    light's over the receiver's."""
+    middle, half = (rows[:, CENTER] - shape.center) @ shape.normal, half_height(rows, np.array(shape.normal))
+    distances = np.maximum(nearest(distance(shape, rows[:, CENTER]), rows), middle - half)
+    return cosine(middle + half, distances) * cosine(rise(shape, rows), distances) / distances**2
+
+
+@of_shape.register
+def _(shape: Sphere, rows: np.ndarray) -> np.ndarray:
+    """2 pi R^2 / (r d) min(1, H/d), d = r - R: the cap that faces the receiver over the square of the distance."""
+    distances = nearest(np.linalg.norm(rows[:, CENTER] - shape.center, axis=1) - shape.radius, rows)
+    caps = 2 * np.pi * shape.radius**2 / ((distances + shape.radius) * distances)
+    return caps * cosine(rise(shape, rows), distances)
+
+
+def half_height(rows: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Half of the length of each element along a direction [m]."""
+    (a, b, c), t, s = rows[:, CELL].T, rows[:, 3:6] @ normal, rows[:, 6:9] @ normal
+    return (np.abs(a * t) + np.abs(b * t + c * s)) / 2
+
+
+def nearest(distances: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """The least distance that any point of each element can have whose centre has `distances` [m]."""
+    a, b, c = rows[:, CELL].T
+    reach = np.maximum(np.hypot(a + b, c), np.hypot(a - b, c)) / 2
+    return np.maximum(distances - reach, 0)
+
+
+def rise(shape: Flat | Sphere, rows: np.ndarray) -> np.ndarray:
+    """The greatest height of a light over each receiver's plane [m]."""
+    return support(shape, rows[:, NORMAL]) - (rows[:, CENTER] * rows[:, NORMAL]).sum(axis=1)
+
+
+def cosine(height: np.ndarray, distance: np.ndarray) -> np.ndarray:
+    """The most that the cosine can be of what is so high and so far."""
+    return np.clip(height / distance, 0, 1)
+
+
+def distance(shape: Flat, x: np.ndarray) -> np.ndarray:
+    """Distance (n,) of points (n, 3) from a flat shape [m]."""
+    offsets = x - np.array(shape.center)
+    heights = offsets @ shape.normal
+    if isinstance(shape, Disk):
+        beside = np.linalg.norm(offsets - heights[:, None] * shape.normal, axis=1) - np.linalg.norm(shape.u)
+        return np.hypot(heights, np.maximum(beside, 0))
+    over = COVERS[type(shape)](offsets @ shape.dual_u, offsets @ shape.dual_v)
+    return np.where(over, np.abs(heights), np.min([from_edge(offsets, *edge) for edge in edges(shape)], axis=0))
+
+
+def edges(shape: Flat) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Start, counted from the shape's centre, and vector of every edge of a triangle or a parallelogram."""
+    u, v = np.array(shape.u), np.array(shape.v)
+    if isinstance(shape, Triangle):
+        return [(0 * u, u), (u, v - u), (v, -v)]
+    start = -(u + v) / 2
+    return [(start, u), (start + u, v), (start + u + v, -u), (start + v, -v)]
+
+
+def from_edge(x: np.ndarray, start: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Distance (n,) of points (n, 3) from an edge [m]."""
+    share = np.clip((x - start) @ along / (along @ along), 0, 1)
+    return np.linalg.norm(x - start - share[:, None] * along, axis=1)
