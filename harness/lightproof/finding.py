@@ -131,8 +131,8 @@ def _blindness(rung: Rung) -> str:
     """What lies outside the tolerance, and why its scatter proves nothing."""
     worst = int(np.argmax(rung.unseen))
     leap = "without bound" if np.isinf(rung.leap[worst]) else f"by up to {100 * rung.leap[worst]:.2g} %"
-    return (f"{rung.scale.place(worst)} is off by {_interval(rung, worst)}, yet a single sample could move it {leap}, so that what"
-            " no sample met cannot be told from what is not there; samples of the light's solid angle, as mc-solid-angle draws"
+    return (f"{rung.scale.place(worst)} is off by {_interval(rung, worst)}, yet a single sample could move it {leap}, so that"
+            " what no sample met cannot be told from what is not there; samples of the light's solid angle, as mc-solid-angle draws"
             " them, are bounded")
 
 
