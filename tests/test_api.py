@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -77,11 +78,26 @@ def test_render_one_film_and_replicates(exact):
     np.testing.assert_allclose(one, exact, atol=0.02 * exact.max())
 
 
+@pytest.mark.parametrize("method", ["mine.py:render", "mine.toml"])
+def test_render_takes_methods_of_the_users_own(method, tmp_path):
+    """What the command line takes: a function in a file, which gives every cell 0.7, and the manifest of a program."""
+    (tmp_path / "mine.py").write_text("def render(scene, samples, seed):\n    return [0.7] * scene.size\n")
+    program = Path(__file__).with_name("outside_renderer.py")
+    asked = [f'["python3", "{program}", {words}]' for words in ('"once", "none"', '"--version"')]
+    (tmp_path / "mine.toml").write_text('name = "mine"\ncommand = {}\nversion = {}\n'.format(*asked))
+    film = lightproof.render("point-light", str(tmp_path / method), samples=64, threads=1)
+    assert film.shape == (12, 16) and (film > 0).all()
+    if method == "mine.py:render":
+        assert (film == 0.7).all()
+
+
 def test_render_says_what_a_method_cannot_do():
     with pytest.raises(RenderError, match="pyrender has no area lights"):
         lightproof.render("square-light", "pyrender")
     with pytest.raises(ValueError, match="mc-area"):
         lightproof.render("square-light", "magic")
+    with pytest.raises(ValueError, match=r"names \d+ methods"):
+        lightproof.render("square-light", "mitsuba*")
 
 
 def test_importing_the_package_loads_neither_reference_nor_judge():

@@ -158,6 +158,7 @@ def test_a_resumed_run_keeps_its_plan(command, capsys):
     (["run", "square-light:fra"], "there is no case 'fra'; the cases are base, near, far"),
     (["run", "--with", "mitsba"], "there is no method 'mitsba'; did you mean mitsuba"),
     (["run", "--with", "xyz*"], "there is no method 'xyz*'; there are analytic, "),
+    (["run", "--with", "cycles/lmap"], "there is no method 'cycles/lmap'; did you mean cycles/lamp"),
     (["run", "--with", "nowhere.py:Renderer"], "nowhere.py: there is no such file"),
     (["run", "--with", "renderer.py"], "renderer.py: name the function or class too, such as renderer.py:render"),
     (["run", "--tags", "shadows"], "there is no tag 'shadows'; did you mean shadow"),

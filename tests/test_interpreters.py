@@ -84,7 +84,7 @@ def test_a_manifest_names_the_interpreter(other, tmp_path):
 @pytest.mark.parametrize(("method", "python", "complaint"), [
     ("mitsuba", "no/python", "other.toml: python: there is no executable 'no/python'; give the path of a Python"),
     ("mitsuba", "no-such-python", "other.toml: python: there is no executable 'no-such-python'"),
-    ("mitsubishi", sys.executable, "other.toml: method: there is no method 'mitsubishi'; there are analytic"),
+    ("mitsubishi", sys.executable, "other.toml: method: there is no method 'mitsubishi'; did you mean mitsuba?"),
 ])
 def test_a_wrong_manifest_says_where(method, python, complaint, tmp_path):
     with pytest.raises(SceneError, match=re.escape(complaint)):

@@ -111,7 +111,7 @@ def test_what_is_not_right_says_why(renderer, message):
 
 
 @pytest.mark.parametrize(("judged", "options", "message"), [
-    ("magic", {}, "there is no method 'magic'; give one of "),
+    ("magic", {}, "there is no method 'magic'; there are analytic, "),
     (lambda scene, samples, seed: None, {}, "is not at the top level of a file"),
     ("mc-area", {"samples": 16}, "give at least 64"),
     (np.zeros(7), {}, r"do not fit point-light; give \(12, 16\)"),

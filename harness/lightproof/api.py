@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from lightproof import suite, verdict
 from lightproof.references import Reference
+from lightproof.renderers import naming
 from lightproof.renderers.pool import Pool
-from lightproof.renderers.registry import METHODS
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status, Trial
 from lightproof.verdict import Verdict
@@ -43,17 +43,17 @@ def render(scene: Scene | str, method: str = "mc-area", samples: int = 1024, rep
     """A film (rows, columns) of a scene in the film's unit, or `replicates` of them (R, rows, columns) with independent seeds,
     at `samples` per element; rendered in a process of its own on `threads` (default: all cores).
 
-    Raises ValueError on an unknown method, RenderError where it cannot do the scene or fails, SceneError.
+    `method` is what the command line's --with takes: a name, `module:name`, `file.py:name` or the path of a manifest. Raises
+    MethodError (a ValueError) where there is none, RenderError where it cannot do the scene or fails, SceneError.
     """
-    scene, _ = found(scene)
-    if method not in METHODS:
-        raise ValueError(f"there is no method {method!r}; give one of {', '.join(METHODS)}")
+    (scene, _), entry = found(scene), naming.entry(method)
     with tempfile.TemporaryDirectory() as folder, Pool(threads or os.cpu_count() or 1) as pool:
-        trials = [Trial(scene.id, scene.case, scene.digest, method, samples, number, seed) for number in range(replicates or 1)]
-        results = [pool.render(METHODS[method], scene, trial, Path(folder) / "film.exr", math.inf) for trial in trials]
+        trials = [Trial(scene.id, scene.case, scene.digest, entry.name, samples, replicate, seed)
+                  for replicate in range(replicates or 1)]
+        results = [pool.render(entry, scene, trial, Path(folder) / "film.exr", math.inf) for trial in trials]
     for result in results:
         if result.status is not Status.OK:
-            raise RenderError(f"{method} on {scene.name}: {result.message}")
+            raise RenderError(f"{entry.name} on {scene.name}: {result.message}")
     films = np.array([result.film.reshape(scene.film.grid) for result in results])
     return films[0] if replicates is None else films
 

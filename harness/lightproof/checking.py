@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import inspect
-import os
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
-from unittest import mock
 
 import numpy as np
 
 from lightproof import api, machine, plan, store
 from lightproof.judging import Judge
+from lightproof.renderers import naming
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS, Entry
 from lightproof.runner import FIRST_SAMPLES, MOST_SAMPLES, REPLICATES, Cell, Runner
@@ -34,7 +33,7 @@ def check(judged: Any, scene: Scene | str, samples: int = MOST_SAMPLES, budget: 
     __tracebackhide__ = True
     found, home = api.found(scene)
     if callable(judged) or isinstance(judged, str):
-        entry = _entry(judged)
+        entry = _own(judged) if callable(judged) else naming.entry(judged)
         limit = f" and at most {samples:,} samples" if samples < MOST_SAMPLES else ""
         name, effort = entry.name, f" (it had {budget:g} s{limit})"
         verdict = _render(entry, found, home, samples, budget)
@@ -45,14 +44,6 @@ def check(judged: Any, scene: Scene | str, samples: int = MOST_SAMPLES, budget: 
         more = effort if verdict.outcome is Outcome.UNDECIDED else ""
         raise AssertionError(f"{name} on {found.name}: {verdict.outcome}: {verdict.reason}{more}")
     return verdict
-
-
-def _entry(renderer: str | Callable) -> Entry:
-    if callable(renderer):
-        return _own(renderer)
-    if renderer not in METHODS:
-        raise ValueError(f"there is no method {renderer!r}; give one of {', '.join(METHODS)}")
-    return METHODS[renderer]
 
 
 def _own(renderer: Callable) -> Entry:
@@ -70,8 +61,8 @@ def _render(entry: Entry, scene: Scene, home: Suite, samples: int, budget: float
     if samples < FIRST_SAMPLES:
         raise ValueError(f"{samples} samples are fewer than the first step takes; give at least {FIRST_SAMPLES}")
     threads = machine.usable_cores()
-    paths = {} if entry.name in METHODS else {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, paths), Pool(threads) as pool:
+    path = () if entry.name in METHODS else tuple(filter(None, sys.path))
+    with tempfile.TemporaryDirectory() as folder, Pool(threads, path=path) as pool:
         header = plan.describe({scene: home}, [entry], threads, seed=0, versions={}, replicates=REPLICATES)
         record = store.create(Path(folder), header, [scene])
         judge = Judge(record)

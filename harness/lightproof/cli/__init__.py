@@ -11,6 +11,7 @@ from lightproof.checked import SceneError, plain
 from lightproof.cli import calibrate, certify, doctor, export, gate, grade, listing, report, run
 from lightproof.cli.status import INCOMPLETE, USAGE, UsageError
 from lightproof.films import FilmError
+from lightproof.renderers.naming import MethodError
 from lightproof.store import StoreError
 
 COMMANDS = {
@@ -35,7 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     try:
         return COMMANDS[options.command].run(options)
-    except (UsageError, SceneError, StoreError, FilmError, BaselineError) as error:
+    except (UsageError, SceneError, MethodError, StoreError, FilmError, BaselineError) as error:
         print(f"lightproof {options.command}: {plain(str(error), LONGEST_COMPLAINT)}", file=sys.stderr)
         return USAGE
     except KeyboardInterrupt:

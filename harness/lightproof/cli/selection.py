@@ -2,63 +2,29 @@
 
 from __future__ import annotations
 
-import fnmatch
-import re
 from collections.abc import Sequence
-from pathlib import Path
 
 from lightproof import scene, suite
-from lightproof.checked import plain
 from lightproof.cli.status import UsageError, unknown
-from lightproof.renderers import manifest
+from lightproof.renderers import naming
 from lightproof.renderers.registry import METHODS, Entry
 from lightproof.scene import Scene
 from lightproof.scene_file import BASE
 from lightproof.suite import Suite
 
 NIGHTLY, QUICK = "nightly", "quick"
-TARGET = re.compile(r"(?P<where>.+):(?P<name>\w+)(?P<options>/.*)?")
 
 
 def methods(patterns: Sequence[str], tags: Sequence[str]) -> list[Entry]:
-    """The methods that `patterns` name: names, globs over names, or of the user's own `module:name` and `path/to/file.py:name`
-    (classes and functions) and manifests, `path/to/renderer.toml`; without patterns each method's best configuration, or every
-    one for the tag nightly. Raises UsageError, SceneError."""
+    """The methods that `patterns` name, as `naming.entries` has it; without patterns each method's best configuration, or every
+    one for the tag nightly. Raises UsageError, MethodError, SceneError."""
     if not patterns:
         return [entry for entry in METHODS.values() if NIGHTLY in tags or not entry.nightly]
     chosen: dict[str, Entry] = {}
-    for entry in (each for pattern in patterns for each in _matching(pattern)):
+    for entry in (each for pattern in patterns for each in naming.entries(pattern)):
         if chosen.setdefault(entry.name, entry) != entry:
             raise UsageError(f"two different methods are called {entry.name}; rename the file of one")
     return list(chosen.values())
-
-
-def _matching(pattern: str) -> list[Entry]:
-    if target := TARGET.fullmatch(pattern):
-        return [_own(**target.groupdict())]
-    if pattern.endswith(".toml"):
-        return [_outside(Path(pattern).resolve())]
-    if pattern.endswith(".py"):
-        raise UsageError(f"{pattern}: name the function or class too, such as {pattern}:render")
-    names = fnmatch.filter(METHODS, pattern)
-    if not names:
-        raise unknown("method", pattern, [*METHODS])
-    return [METHODS[name] for name in names]
-
-
-def _own(where: str, name: str, options: str | None) -> Entry:
-    path = Path(where)
-    if where.endswith(".py") and not path.is_file():
-        raise UsageError(f"{where}: there is no such file; give the path of a Python file, such as my_renderer.py:render")
-    stem, where = (path.stem, str(path.resolve())) if where.endswith(".py") else (where, where)
-    return Entry(plain(f"{stem}:{name}{options or ''}"), f"{where}:{name}", worker=f"{where}:{name}")
-
-
-def _outside(path: Path) -> Entry:
-    described = manifest.read(path)
-    if described.name in METHODS:
-        raise UsageError(f"{path}: name: {described.name!r} is a method of Lightproof's own; give the renderer another name")
-    return described.entry(path)
 
 
 def scenes(names: Sequence[str], tags: Sequence[str], root: Suite) -> dict[Scene, Suite]:

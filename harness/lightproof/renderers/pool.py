@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -55,12 +55,13 @@ class Preparation:
 
 class Pool:
     """The workers of a run. `patience` [s] is what a renderer may take to start; to prepare a scene it may take `PREPARING`
-    times as long."""
+    times as long. Workers import from the folders of `path` first."""
 
-    def __init__(self, threads: int, patience: float = PATIENCE, file_limit: int = LARGEST_FILE):
+    def __init__(self, threads: int, patience: float = PATIENCE, file_limit: int = LARGEST_FILE, path: Sequence[str] = ()):
         self.threads = threads
         self._patience = patience
         self._file_limit = file_limit
+        self._path = path
         self._workers: dict[str, Worker] = {}
         self._opened: dict[str, dict[str, About]] = {}
         self._unable: dict[str, Exception] = {}
@@ -170,7 +171,7 @@ class Pool:
     def _ask(self, entry: Entry, op: str, timeout: float, **arguments: Any) -> dict[str, Any]:
         try:
             if entry.worker not in self._workers:
-                self._workers[entry.worker] = Worker(self.threads, self._file_limit, entry.python)
+                self._workers[entry.worker] = Worker(self.threads, self._file_limit, entry.python, self._path)
             answer = self._workers[entry.worker].ask(op, timeout, method=entry.name, **arguments)
         except WorkerDied as error:
             self._discard(entry.worker)

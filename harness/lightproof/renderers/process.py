@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 import uuid
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -52,11 +53,11 @@ class Worker:
 
     Start it from a thread that lasts: the kernel kills it when that thread ends. What it prints goes to a file that is
     emptied before each request and cannot grow beyond `file_limit` [bytes], as no file of the worker's can. It runs under the
-    interpreter `python` (a path), by default the harness's own; raises WorkerDied where there is none. Its temporary files are
-    in a folder of its own, which goes when it ends, however it does.
+    interpreter `python` (a path), by default the harness's own, and imports from the folders of `path` first; raises WorkerDied
+    where there is no such interpreter. Its temporary files are in a folder of its own, which goes when it ends, however it does.
     """
 
-    def __init__(self, threads: int, file_limit: int = LARGEST_FILE, python: str = ""):
+    def __init__(self, threads: int, file_limit: int = LARGEST_FILE, python: str = "", path: Sequence[str] = ()):
         self._mark = uuid.uuid4().hex
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the worker
         fcntl.fcntl(self._log, fcntl.F_SETFL, os.O_APPEND)  # else the worker would write on where it was before it was emptied
@@ -68,6 +69,7 @@ class Worker:
         self._answers, answers = os.pipe()
         command = [python or sys.executable, "-u", str(BOOTSTRAP)]
         numbers = (requests, answers, os.getpid(), file_limit)
+        imports = {"PYTHONPATH": os.pathsep.join(path)} if path else {}
         try:
             self._process = subprocess.Popen(
                 [*command, *map(str, numbers)],
@@ -76,7 +78,7 @@ class Worker:
                 stdout=self._log,
                 stderr=self._log,
                 start_new_session=True,
-                env={**os.environ, "OMP_NUM_THREADS": str(threads), "TMPDIR": self._scratch.name, MARK: self._mark},
+                env={**os.environ, **imports, "OMP_NUM_THREADS": str(threads), "TMPDIR": self._scratch.name, MARK: self._mark},
             )
         except OSError as error:
             self._release()

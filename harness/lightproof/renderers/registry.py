@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass
+
+from lightproof.checked import shown
 
 OURS = "lightproof"  # the process of the in-house estimators
 
@@ -76,3 +79,12 @@ METHODS = {
         Entry("pyrender", "lightproof.renderers.pyrender:Pyrender", worker="pyrender", extra="pyrender"),
     )
 }
+
+
+def unknown(name: str) -> str:
+    """What to say of a name that no method has: which come closest, or else which families there are."""
+    families = list(dict.fromkeys(method.partition("/")[0] for method in METHODS))
+    close = difflib.get_close_matches(name, METHODS if "/" in name else families)
+    advice = f"did you mean {' or '.join(close)}?" if close else f"there are {', '.join(families)}, some of them in several"
+    tail = "'lightproof list' shows all" if close else "configurations that 'lightproof list' shows"
+    return f"there is no method {shown(name)}; {advice} {tail}"

@@ -11,13 +11,13 @@ from typing import Any
 from lightproof import checked
 from lightproof.checked import Checked, SceneError
 from lightproof.renderers import fields
-from lightproof.renderers.registry import METHODS, Entry
+from lightproof.renderers.registry import METHODS, Entry, unknown
 
 
 def _method() -> Any:
     def check(value: Any) -> str:
-        if value not in METHODS:
-            raise SceneError("", f"there is no method {checked.shown(value)}; there are {', '.join(METHODS)}")
+        if not isinstance(value, str) or value not in METHODS:
+            raise SceneError("", unknown(str(value)))
         return value
 
     return checked.rule(check, {"enum": list(METHODS)})
