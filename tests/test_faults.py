@@ -35,7 +35,7 @@ FAULTS = {
     "writes-nothing": "there is no such file",
     "writes-half-an-image": "it may be truncated",
     "writes-another-size": "has (1, 2) rows and columns; it must have (12, 16)",
-    "writes-another-scene": "its header names another scene (digest [2J0123); it must be ",
+    "writes-another-scene": "the film's header names another scene (digest [2J0123); it must be ",
     "nan": f"1 of 192 values of Y are no light, the first nan in element 3; {NO_LIGHT}",
     "infinite": f"1 of 192 values of Y are no light, the first inf in element 4; {NO_LIGHT}",
     "negative": f"1 of 192 values of Y are no light, the first -1 in element 5; {NO_LIGHT}",

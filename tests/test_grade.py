@@ -125,6 +125,19 @@ def test_half_floats_widen_the_intervals(tmp_path):
     assert "Its format rounds" in result.caveat
 
 
+def test_channels_that_differ_are_told_of(tmp_path):
+    """Red 1.1, green 1 and blue 0.9 times the light: 20 per cent apart. One of them alone is what it is; grey needs no word."""
+    planes = {name: np.ascontiguousarray(scale * EXACT, np.float32) for name, scale in zip("RGB", (1.1, 1, 0.9), strict=True)}
+    path = tmp_path / "a.exr"
+    OpenEXR.File({"type": OpenEXR.scanlineimage}, planes).write(str(path))
+    grey = save(tmp_path / "b.exr", EXACT)
+    together, red, plain = (grading.results([[each]], SCENE, Reading(channel=name))[0]
+                            for each, name in ((path, ""), (path, "R"), (grey, "")))
+    assert "R, G and B lie 20 % apart" in together.caveat
+    np.testing.assert_allclose(red.film, 1.1 * EXACT.ravel(), rtol=1e-6)
+    assert "apart" not in red.caveat + plain.caveat
+
+
 def test_what_does_not_fit(tmp_path):
     films.write(tmp_path / "b.exr", SCENE.film.grid, {"Y": EXACT.ravel(), "quantization": np.full(EXACT.size, -1.0)}, {})
     with pytest.raises(FilmError, match="no half step"):

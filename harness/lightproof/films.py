@@ -45,13 +45,16 @@ def read(path: Path, channel: str = "") -> tuple[tuple[int, int], dict[str, np.n
     """Grid (rows, columns), channels as (n,) float64 and the header's strings, of a film or of anybody's picture.
 
     Y is the light: the channel Y with its residual added back, or the mean of R, G and B, or what `channel` names (see
-    `exr.Image.light`). Half floats are good to half a step, which `quantization` says. Raises FilmError where the file is
-    missing, truncated or no flat OpenEXR image, or where its light is not to be found.
+    `exr.Image.light`); `spread` is what R, G and B lie apart, where they do. Half floats are good to half a step, which
+    `quantization` says. Raises FilmError where the file is missing, truncated or no flat OpenEXR image, or where its light is
+    not to be found.
     """
     image = exr.read(path)
     names = image.light(channel)
     chosen = [_numbers(image, name) for name in names]
     found = {"Y": np.mean(chosen, axis=0)}
+    if (spread := np.ptp(chosen, axis=0)).any():
+        found["spread"] = spread
     if names == ("Y",):
         found["Y"] = sum((image.channels[name] for name in RESIDUALS if name in image.channels), found["Y"])
         found |= {name: _numbers(image, name) for name in EXTRAS if name in image.channels}

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -26,6 +26,7 @@ from lightproof.trial import Result, Status, Trial
 METHOD = "picture"
 PROGRAM = ("method_version", "software", "Software")  # attributes that name it
 ALONE = "A single picture is judged as it is, noise included"
+GREY = 1e-5  # of a picture's mean: channels that lie no farther apart are equal but for rounding
 COUNT = re.compile("[1-9][0-9]{0,17}")  # in a header that may say anything
 
 
@@ -91,8 +92,17 @@ def _result(path: Path, scene: Scene, reading: Reading, multiple: int) -> Result
         version=next((header[key] for key in PROGRAM if key in header), ""),
         settings=about | ({"samples": samples} if known else {}),
         precision="float32" if half is None else "",
-        caveat="" if half is None else "Its format rounds, and half a step of it widens each interval",
+        caveat=". ".join(_caveats(channels)),
     )
+
+
+def _caveats(channels: Mapping[str, np.ndarray]) -> Iterator[str]:
+    apart = np.mean(channels.get("spread", 0.0)) / (np.mean(channels["Y"]) or 1.0)
+    if apart > GREY:
+        yield (f"R, G and B lie {100 * apart:.2g} % apart, on average, though every scene is grey; what is judged is their mean"
+               " (--channel judges one)")
+    if "quantization" in channels:
+        yield "Its format rounds, and half a step of it widens each interval"
 
 
 def _check_header(path: Path, header: Mapping[str, str], scene: Scene, reading: Reading) -> None:

@@ -201,13 +201,14 @@ def read_film(path: Path, scene: Scene) -> dict[str, np.ndarray]:
     triangles change and what one sample can add may be infinite: not known, and not bounded."""
     grid, channels, header = films.read(path)
     if header.get("digest") != scene.digest:
-        raise FilmError(f"{path}: its header names another scene (digest {header.get('digest')}); it must be {scene.digest}")
+        raise FilmError(f"the film's header names another scene (digest {header.get('digest')});"
+                        f" it must be {scene.digest} ({path})")
     if grid != scene.film.grid:
-        raise FilmError(f"{path}: has {grid} rows and columns; it must have {scene.film.grid}")
+        raise FilmError(f"the film has {grid} rows and columns; it must have {scene.film.grid} ({path})")
     for name, values in channels.items():
         wrong = np.flatnonzero(~((values >= 0) & (np.isfinite(values) | (name in UNBOUNDED))))
         if wrong.size:
             first = f"the first {values[wrong[0]]:g} in element {wrong[0]}"
-            raise FilmError(f"{path}: {wrong.size} of {values.size} values of {name} are no light, {first};"
-                            " every value must be finite and zero or more")
+            raise FilmError(f"{wrong.size} of {values.size} values of {name} are no light, {first};"
+                            f" every value must be finite and zero or more ({path})")
     return channels
