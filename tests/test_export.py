@@ -151,6 +151,18 @@ def test_usd_lamps_are_where_the_light_is(name, tmp_path):
     assert np.linalg.det(matrix) == pytest.approx(1)
 
 
+def test_the_command_that_grades_names_what_was_exported(tmp_path):
+    """A scene of ours is named by its id; a changed copy, which has another light under the same id, by its file."""
+    copy = tmp_path / "scenes/square-light.toml"
+    copy.parent.mkdir()
+    copy.write_text((SUITE.root / "scenes/square-light.toml").read_text().replace("radiance = 2.04", "radiance = 3"))
+    changed, _ = suite.find(f"{copy}:far", SUITE)
+    texts = [export(scene, "pbrt", tmp_path).read_text() for scene in (SUITE.scene("square-light:far"), changed)]
+    commands = [re.search("lightproof grade .*", text)[0] for text in texts]
+    assert commands[0].startswith("lightproof grade square-light-far.exr --scene square-light:far --quantity")
+    assert commands[1].startswith("lightproof grade square-light-far.exr --scene square-light.toml:far --quantity")
+
+
 def test_a_tool_that_is_not_there(monkeypatch, tmp_path):
     """Without Blender's module the .blend cannot be written: the reason is the command that installs it."""
     (tmp_path / "bpy.py").write_text("raise ModuleNotFoundError('bpy')")

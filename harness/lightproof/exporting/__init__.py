@@ -68,7 +68,7 @@ def remarks(scene: Scene, path: Path) -> list[str]:
     Lightproof's own it names the file)."""
     seen = view(scene)
     columns, rows = seen.resolution
-    name = scene.name if scene.id in suite.default().ids else scene.name.replace(scene.id, f"{scene.id}.toml", 1)
+    name = scene.name if _is_known(scene) else scene.name.replace(scene.id, f"{scene.id}.toml", 1)
     judge = f"lightproof grade {path.stem}.exr --scene {name}"
     lines = [
         f"Lightproof scene {scene.name}: {scene.title}. Metres, z up.",
@@ -82,6 +82,13 @@ def remarks(scene: Scene, path: Path) -> list[str]:
         ]
         judge += " --quantity radiance"
     return [*lines, f"Judge it with: {judge}"]
+
+
+def _is_known(scene: Scene) -> bool:
+    """Whether a scene without its degenerate parts is Lightproof's own, and not a changed copy of the same name."""
+    home = suite.default()
+    own = home.cases(scene.id).get(scene.case) if scene.id in home.ids else None
+    return own is not None and own.tangible == scene
 
 
 def numbers(values: Any) -> str:
