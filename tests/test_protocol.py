@@ -128,7 +128,7 @@ def test_what_a_renderer_leaves_behind_goes_with_it(tmp_path):
     with Pool(threads=1) as pool:
         assert pool.render(entry, SCENE, trial, tmp_path / "film.exr", 20).status is Status.OK
         (worker,) = pool._workers.values()
-        scratch = Path(worker._scratch.name)
+        scratch = worker._folders[0].path
         child = psutil.Process(int(next(scratch.glob("child-*")).name.removeprefix("child-")))
     psutil.wait_procs([child], timeout=10)
     assert not child.is_running() or child.status() == psutil.STATUS_ZOMBIE

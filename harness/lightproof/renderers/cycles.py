@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import tempfile
 import time
 from collections.abc import Mapping
@@ -15,7 +14,7 @@ import numpy as np
 
 from lightproof.method import Method, Rendering
 from lightproof.quiet import quiet
-from lightproof.renderers import cycles_scene, importing, mesh, options, tessellation, transport, views
+from lightproof.renderers import cycles_scene, importing, mesh, options, scratch, tessellation, transport, views
 from lightproof.renderers.views import View
 from lightproof.scene import AreaLight, CameraFilm, DirectionalLight, Environment, PointLight, Scene
 
@@ -65,8 +64,7 @@ class Cycles(Method):
     def open(self) -> None:
         with quiet(1):
             self.bpy = importing.renderer("bpy", "cycles")
-        memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
-        self.folder = tempfile.TemporaryDirectory(prefix="lightproof-", dir=memory)
+        self.folder = tempfile.TemporaryDirectory(dir=scratch.in_memory())
 
     def version(self) -> str:
         return self.bpy.app.version_string

@@ -13,6 +13,7 @@ from lightproof import films
 from lightproof.checked import plain
 from lightproof.films import FilmError
 from lightproof.method import Unavailable
+from lightproof.renderers import scratch
 from lightproof.renderers.process import LARGEST_FILE, Worker, WorkerDied, WorkerTimeout
 from lightproof.renderers.registry import Entry
 from lightproof.scene import Scene
@@ -58,6 +59,7 @@ class Pool:
     times as long. Workers import from the folders of `path` first."""
 
     def __init__(self, threads: int, patience: float = PATIENCE, file_limit: int = LARGEST_FILE, path: Sequence[str] = ()):
+        scratch.sweep()
         self.threads = threads
         self._patience = patience
         self._file_limit = file_limit

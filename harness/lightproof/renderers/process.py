@@ -20,6 +20,7 @@ from typing import Any
 import psutil
 
 from lightproof.checked import plain
+from lightproof.renderers import scratch
 
 BOOTSTRAP = Path(__file__).with_name("bootstrap.py")
 MARK = "LIGHTPROOF_WORKER"
@@ -54,14 +55,14 @@ class Worker:
     Start it from a thread that lasts: the kernel kills it when that thread ends. What it prints goes to a file that is
     emptied before each request and cannot grow beyond `file_limit` [bytes], as no file of the worker's can. It runs under the
     interpreter `python` (a path), by default the harness's own, and imports from the folders of `path` first; raises WorkerDied
-    where there is no such interpreter. Its temporary files are in a folder of its own, which goes when it ends, however it does.
+    where there is no such interpreter. Its temporary files are in folders of its own, which go when it ends, however it does.
     """
 
     def __init__(self, threads: int, file_limit: int = LARGEST_FILE, python: str = "", path: Sequence[str] = ()):
         self._mark = uuid.uuid4().hex
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the worker
         fcntl.fcntl(self._log, fcntl.F_SETFL, os.O_APPEND)  # else the worker would write on where it was before it was emptied
-        self._scratch = tempfile.TemporaryDirectory(prefix="lightproof-", ignore_cleanup_errors=True)
+        self._folders = [scratch.Folder(place) for place in scratch.places()]
         self._buffer = b""
         self._asked = 0
         self._most_children = CHILDREN_PER_THREAD * (threads + 4)
@@ -69,6 +70,8 @@ class Worker:
         self._answers, answers = os.pipe()
         command = [python or sys.executable, "-u", str(BOOTSTRAP)]
         numbers = (requests, answers, os.getpid(), file_limit)
+        disk, memory = (str(folder.path) for folder in self._folders)
+        variables = {"OMP_NUM_THREADS": str(threads), "TMPDIR": disk, scratch.VARIABLE: memory, MARK: self._mark}
         imports = {"PYTHONPATH": os.pathsep.join(path)} if path else {}
         try:
             self._process = subprocess.Popen(
@@ -78,7 +81,7 @@ class Worker:
                 stdout=self._log,
                 stderr=self._log,
                 start_new_session=True,
-                env={**os.environ, **imports, "OMP_NUM_THREADS": str(threads), "TMPDIR": self._scratch.name, MARK: self._mark},
+                env={**os.environ, **imports, **variables},
             )
         except OSError as error:
             self._release()
@@ -184,4 +187,5 @@ class Worker:
         os.close(self._requests)
         os.close(self._answers)
         self._log.close()
-        self._scratch.cleanup()
+        for folder in self._folders:
+            folder.remove()
