@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from lightproof.method import Method, Rendering
-from lightproof.renderers import importing, radiance_apertures, radiance_rays, radiance_scene, radiance_transport
+from lightproof.renderers import importing, radiance_apertures, radiance_rays, radiance_scene, radiance_transport, scratch
 from lightproof.renderers.radiance_process import Programs, Rtraces
 from lightproof.renderers.radiance_transport import Transport
 from lightproof.scene import CameraFilm, DirectionalLight, PointLight, PointsFilm, Scene, SunDisc
@@ -58,8 +58,7 @@ class Radiance(Method):
 
     def open(self) -> None:
         folder = Path(importing.renderer("pyradiance", "radiance").__file__).parent
-        memory = "/dev/shm" if Path("/dev/shm").is_dir() else None
-        self.folder = tempfile.TemporaryDirectory(prefix="lightproof-", dir=memory)
+        self.folder = tempfile.TemporaryDirectory(dir=scratch.in_memory())
         self.programs = Programs(folder, Path(self.folder.name))
 
     def version(self) -> str:
