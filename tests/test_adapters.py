@@ -61,6 +61,13 @@ def test_reflections_that_matter():
     assert transport.unsupported(brightest, 500) == "917 reflections matter here, and at most 500 are followed"
 
 
+def test_only_faint_paths_may_end_early():
+    """Reflectance 0.5: after 7 of 20 reflections a path is below a hundredth; five are made in any case."""
+    assert transport.certain(SUITE.scene("sphere-furnace")) == 7
+    assert transport.certain(SUITE.scene("sphere-furnace:five-reflections")) == 5
+    assert transport.certain(SUITE.scene("square-light")) == 0
+
+
 @pytest.mark.parametrize(("scene", "integrator"), [
     ("square-light", {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0}),
     ("square-light-seen", {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0}),

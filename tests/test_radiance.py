@@ -17,6 +17,7 @@ from one_process import Shot
 
 from lightproof import exporting, scene_file, suite
 from lightproof.renderers import importing
+from lightproof.renderers.radiance_transport import transport_of
 from lightproof.renderers.registry import METHODS
 
 SUITE = suite.default()
@@ -102,6 +103,15 @@ def test_samples_are_those_spent(tmp_path: Path) -> None:
     scenes = [SUITE.scene("occluded-square"), SUITE.scene("point-light")]
     answers = one_process.render("radiance", [Shot(each, 100) for each in scenes], tmp_path)
     assert [answer["samples"] for answer in answers] == [128, 100]
+
+
+def test_a_ball_above_the_horizon_takes_one_ray(tmp_path: Path) -> None:
+    """sphere-light: what is left of the noise comes from where in its element a point lies; a ball that the horizon cuts is
+    sampled all over."""
+    whole, cut = (SUITE.scene(name) for name in ("sphere-light", "sphere-light:horizon"))
+    assert transport_of(whole).middle and not transport_of(cut).middle
+    (answer,) = one_process.render("radiance", [Shot(whole, 256)], tmp_path)
+    assert np.array(answer["film"]) == pytest.approx(SUITE.reference(whole).value, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["disk-light:axis", "off-centre-point-in-sphere:irradiance"])

@@ -74,7 +74,8 @@ class LuxCore(Method):
         return " ".join(known)
 
     def tessellation(self, scene: Scene) -> np.ndarray | None:
-        return tessellation.difference(scene, tessellation.meshes(scene, luxcore_scene.lamps(scene)))
+        native = luxcore_scene.lamps(scene)
+        return tessellation.difference(scene, tessellation.meshes(scene, native, luxcore_scene.LAMP_CORNERS))
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()

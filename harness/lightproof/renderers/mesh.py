@@ -59,8 +59,8 @@ class Mesh:
         return np.cross(b - a, c - a)
 
 
-def tessellate(shape: Shape, inside: bool = False) -> Mesh:
-    """A shape's triangles, front outward or, with `inside`, inward.
+def tessellate(shape: Shape, inside: bool = False, corners: int = CIRCLE) -> Mesh:
+    """A shape's triangles, front outward or, with `inside`, inward; `corners` are those of a disk's or a cylinder's circle.
 
     Round shapes are scaled to keep their area, which for a convex body keeps its mean projected area (Cauchy); a sphere
     seen from inside is scaled to contain the true sphere, so that no point of its wall lies outside.
@@ -69,11 +69,11 @@ def tessellate(shape: Shape, inside: bool = False) -> Mesh:
         case Polygon():
             return _polygon(np.array(shape.vertices))
         case Disk():
-            return _disk(shape)
+            return _disk(shape, corners)
         case Sphere():
             return _sphere(shape, inside)
         case Cylinder():
-            return _cylinder(shape, inside)
+            return _cylinder(shape, inside, corners)
         case Cap():
             return _cap(shape, inside)
 
@@ -110,26 +110,26 @@ def _is_ear(flat: np.ndarray, left: list[int], i: int) -> bool:
     return not any(all(geometry.turn(flat[p], flat[q], point) >= 0 for p, q in ((a, b), (b, c), (c, a))) for point in others)
 
 
-def _circle(corners: int = CIRCLE) -> np.ndarray:
+def _circle(corners: int) -> np.ndarray:
     angles = 2 * np.pi * np.arange(corners) / corners
     return np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
-def _disk(disk: Disk) -> Mesh:
-    same_area = np.sqrt(2 * np.pi / CIRCLE / np.sin(2 * np.pi / CIRCLE))
-    rim = disk.radius * same_area * _circle() @ np.stack(geometry.tangents(disk.normal))
-    here = np.arange(CIRCLE)
-    fan = np.stack([np.full(CIRCLE, CIRCLE), here, np.roll(here, -1)], axis=1)
+def _disk(disk: Disk, corners: int) -> Mesh:
+    same_area = np.sqrt(2 * np.pi / corners / np.sin(2 * np.pi / corners))
+    rim = disk.radius * same_area * _circle(corners) @ np.stack(geometry.tangents(disk.normal))
+    here = np.arange(corners)
+    fan = np.stack([np.full(corners, corners), here, np.roll(here, -1)], axis=1)
     return Mesh(np.array(disk.center) + np.vstack([rim, np.zeros(3)]), fan)
 
 
-def _cylinder(cylinder: Cylinder, inside: bool) -> Mesh:
-    same_area = np.pi / CIRCLE / np.sin(np.pi / CIRCLE)
-    base = np.array(cylinder.base) + cylinder.radius * same_area * _circle() @ np.stack(geometry.tangents(cylinder.axis))
-    here = np.arange(CIRCLE)
+def _cylinder(cylinder: Cylinder, inside: bool, corners: int) -> Mesh:
+    same_area = np.pi / corners / np.sin(np.pi / corners)
+    base = np.array(cylinder.base) + cylinder.radius * same_area * _circle(corners) @ np.stack(geometry.tangents(cylinder.axis))
+    here = np.arange(corners)
     following = np.roll(here, -1)
-    triangles = np.vstack([np.stack([here, following, following + CIRCLE], axis=1),
-                           np.stack([here, following + CIRCLE, here + CIRCLE], axis=1)])
+    triangles = np.vstack([np.stack([here, following, following + corners], axis=1),
+                           np.stack([here, following + corners, here + corners], axis=1)])
     mesh = Mesh(np.vstack([base, base + cylinder.height * geometry.unit(cylinder.axis)]), triangles)
     return mesh.flipped() if inside else mesh
 

@@ -21,6 +21,7 @@ from lightproof.method import Method, Rendering
 from lightproof.renderers import importing, radiance_apertures, radiance_rays, radiance_scene, radiance_transport, scratch
 from lightproof.renderers.radiance_process import Programs, Rtraces
 from lightproof.renderers.radiance_transport import Transport
+from lightproof.renderers.transport import FAINT
 from lightproof.scene import CameraFilm, DirectionalLight, PointLight, PointsFilm, Scene, SunDisc
 
 SHAPES, SCENE, OCTREE = "shapes.cal", "scene.rad", "scene.oct"
@@ -28,8 +29,8 @@ STRATA = 64  # parts of a lamp or of the hemisphere, each sampled once from each
 DROPPED = 1e-4  # times a lamp's parts: the cosine below which Radiance takes one for seen from behind
 EXTENT = 3e3  # about how large a scene is made (a room in millimetres): what is closer than 1e-6 Radiance takes for one place
 AT_ONCE = 1 << 18  # rays made at a time
-EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-dj", "1", "-st", "1", "-lw", "0"]
-"""No shadow ray is left out, lamps are sampled all over, no path is cut by its weight."""
+EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-st", "1", "-lw", str(FAINT)]
+"""No shadow ray is left out, faint paths end by Russian roulette alone."""
 CACHED = ["-aa", "0.1", "-ar", "64", "-ad", "512", "-lw", "1e-4"]
 
 SEQUENCE, RANDOM = "-u-", "-u+"
@@ -66,7 +67,7 @@ class Radiance(Method):
         return f"{radiance} (pyradiance {importlib.metadata.version('pyradiance')})"
 
     def settings(self) -> Mapping[str, Any]:
-        return {"options": " ".join(self.options), "lamps": "native" if self.planned.native else "sampled evenly",
+        return {"options": " ".join(self.options), "lamps": _lamps(self.planned),
                 "strata": self.strata}
 
     def unsupported(self, scene: Scene) -> str | None:
@@ -128,10 +129,18 @@ class Radiance(Method):
         self.rtraces = self.programs.rtraces(self.options, self.octree, self.threads)
 
 
+def _lamps(planned: Transport) -> str:
+    if planned.middle:
+        return "one ray to the middle"
+    return "native" if planned.native else "sampled evenly"
+
+
 def strata(scene: Scene, planned: Transport) -> int:
     """Parts of each lamp, or of the hemisphere, that are sampled from one point. One where paths go on from there; and, because
     Radiance leaves out a part that it sees at a cosine below `DROPPED` times their number, where a lamp is seen as flatly as
-    that, or where each element counts by itself."""
+    that, or where each element counts by itself; and where the lamp's middle says all."""
+    if planned.middle:
+        return 1
     lamps, suns = radiance_transport.lamps(scene), [light for light in scene.lights if isinstance(light, SunDisc)]
     if planned.bounces:
         small = any(isinstance(light, PointLight | DirectionalLight) for light in scene.lights)
@@ -144,8 +153,8 @@ def strata(scene: Scene, planned: Transport) -> int:
 
 def options(scene: Scene, planned: Transport, parts: int, cache: bool) -> list[str]:
     """Of rtrace: as many bounces as count; a lamp or the hemisphere in `parts`; indirect light from a `cache` or not."""
-    lamps = ["-ds", "0" if planned.bounces or parts == 1 else "1e-4"]
-    around = ["-ab", str(planned.bounces), "-lr", str(planned.bounces + 1), "-as", "0"]
+    lamps = ["-ds", "0" if planned.bounces or parts == 1 else "1e-4", "-dj", "0" if planned.middle else "1"]
+    around = ["-ab", str(planned.bounces), "-lr", str(-planned.bounces - 1), "-as", "0"]
     stored = CACHED if cache else ["-aa", "0", "-ad", str(parts if planned.bounces else 1)]
     irradiance = [] if isinstance(scene.film, CameraFilm) else ["-I+"]
     return [*EXACT, *lamps, *around, *stored, *irradiance]

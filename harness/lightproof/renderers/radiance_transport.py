@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from lightproof.geometry import Cap, Polygon, Shape
+from lightproof.geometry import Cap, Polygon, Shape, Sphere, unit
 from lightproof.renderers import radiance_apertures, transport
 from lightproof.scene import (
     AreaLight,
@@ -20,6 +20,7 @@ from lightproof.scene import (
     Environment,
     OvercastSky,
     PointLight,
+    PointsFilm,
     Scene,
     SunDisc,
     Surface,
@@ -32,12 +33,14 @@ WIDEST = 60  # degrees: half angle of a distant disc
 @dataclass(frozen=True)
 class Transport:
     """`bounces` is -ab. With `aims`, shadow rays aim at parallelograms, points and beams; with `aperture`, at the one lamp of
-    another shape too, through an aperture, which stops rays that look around or aim at another aperture."""
+    another shape too, through an aperture, which stops rays that look around or aim at another aperture; with `middle` one
+    ray at the middle of a ball says all."""
 
     bounces: int
     aims: bool = True
     aperture: bool = False
     native: bool = False
+    middle: bool = False
 
     def aims_at(self, shape: Shape) -> bool:
         """Whether a lamp of this shape is a light that shadow rays aim at."""
@@ -52,6 +55,8 @@ def transport_of(scene: Scene, native: bool = False) -> Transport:
     direct = max(reflections - camera, 0)
     if not _around(scene) and not shaped:
         return Transport(direct, native=native)
+    if _is_lone_ball(scene):
+        return Transport(0, native=True, middle=True)
     if not _around(scene) and direct == 0 and len(shaped) == 1:
         return Transport(0, aperture=True)
     aims = scene.max_bounces == "all" or not scene.reflects
@@ -92,6 +97,19 @@ def is_parallelogram(shape: Shape) -> bool:
         return False
     a, b, c, d = np.array(shape.vertices)
     return float(np.linalg.norm(a + c - b - d)) <= 1e-9 * float(np.linalg.norm(c - a))
+
+
+def _is_lone_ball(scene: Scene) -> bool:
+    """Whether all light is that of a ball which the whole film sees above its horizon: then E = pi L (R/d)^2 cos(theta), d and
+    theta being those of its middle (Nusselt), is what Radiance computes from the ball's middle and its cross-section."""
+    if scene.surfaces or len(scene.lights) != 1 or isinstance(scene.film, CameraFilm):
+        return False
+    ball, film = getattr(scene.lights[0], "shape", None), scene.film
+    if not isinstance(ball, Sphere):
+        return False
+    places, normals = (film.positions, film.normals) if isinstance(film, PointsFilm) else ([film.origin], [film.normal])
+    heights = ((ball.center - np.array(places)) * unit(np.array(normals))).sum(axis=1)
+    return bool((heights >= ball.radius).all())
 
 
 def _around(scene: Scene) -> list[Any]:

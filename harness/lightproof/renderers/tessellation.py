@@ -19,9 +19,11 @@ AFAR = 1e9  # m: where a beam comes from
 DEEPEST = 2  # of an outline's width: the middles of triangles lie no deeper
 
 
-def meshes(scene: Scene, native: Container[str] = ()) -> dict[str, Mesh]:
-    """The triangles of a scene's round shapes by id, but for those that are `native` to a renderer."""
-    return {thing.id: mesh.tessellate(thing.shape, getattr(thing, "side", "") == "inside")
+def meshes(scene: Scene, native: Container[str] = (), lamp_corners: int = mesh.CIRCLE) -> dict[str, Mesh]:
+    """The triangles of a scene's round shapes by id, but for those that are `native` to a renderer; a light's circle has
+    `lamp_corners`."""
+    return {thing.id: mesh.tessellate(thing.shape, getattr(thing, "side", "") == "inside",
+                                      lamp_corners if isinstance(thing, AreaLight) else mesh.CIRCLE)
             for thing in _things(scene) if not isinstance(thing.shape, Polygon) and thing.id not in native}
 
 

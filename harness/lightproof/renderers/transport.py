@@ -8,6 +8,7 @@ from lightproof.scene import CameraFilm, Scene
 
 MOST = 10_000  # reflections that a renderer without a limit of its own is made to follow
 CUT = 1e-3  # of the tolerance: what the reflections beyond the last one may hold, where all are asked for
+FAINT = 0.01  # of its first weight: a path that is left with so little may be ended at random and hardly adds to the noise
 SLACK = 0.1  # of the tolerance: the same where a renderer's limit comes first
 
 
@@ -20,6 +21,12 @@ def unsupported(scene: Scene, most: int = MOST) -> str | None:
 def reflections(scene: Scene, most: int = MOST) -> int:
     """Reflections between emission and the film that a renderer has to follow; 0 where nothing reflects."""
     return int(min(_needed(scene, CUT), most))
+
+
+def certain(scene: Scene) -> int:
+    """Reflections that every path makes; after these it is faint, and roulette that keeps the expectation halves the cost."""
+    largest = max((surface.reflectance for surface in scene.surfaces), default=0)
+    return reflections(scene) if largest in (0, 1) else min(math.ceil(math.log(FAINT) / math.log(largest)), reflections(scene))
 
 
 def edges(scene: Scene) -> int:
