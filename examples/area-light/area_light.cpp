@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,37 +26,30 @@ struct Json {
     const Json& operator[](const string& key) const { return fields.at(key); }
 };
 
-struct Parser {
-    const string& in;
-    size_t at = 0;
+string quoted(std::istream& in) {        // after the opening quote; escaped letters are in titles only, and stay as they are
+    string text;
+    for (char c; in.get(c) && c != '"';) text += c == '\\' ? char(in.get()) : c;
+    return text;
+}
 
-    bool take(char c) {
-        while (isspace((unsigned char)in.at(at))) at++;
-        return in[at] == c && ++at;
+Json parse(std::istream& in) {
+    Json json;
+    char c = 0;
+    in >> c;
+    if (c == '{') {
+        while (in >> c && c != '}')      // or a comma, or the quote of a key
+            if (c == '"') { string key = quoted(in); in >> c, json.fields[key] = parse(in); }
+    } else if (c == '[') {
+        while (in >> c && c != ']')
+            if (c != ',') in.putback(c), json.items.push_back(parse(in));
+    } else if (c == '"') {
+        json.text = quoted(in);
+    } else {
+        for (in.putback(c); in.get(c) && !strchr(",]} ", c);) json.text += c;
+        in.putback(c);
     }
-    string quoted() {                    // after the opening quote
-        string text;
-        for (; in.at(at) != '"'; at++) {
-            if (in[at] == '\\' && in.at(++at) == 'u') at += 4, text += '?';  // a letter beyond ASCII: in titles only
-            else text += in[at];
-        }
-        return at++, text;
-    }
-    Json value() {
-        Json json;
-        if (take('{')) {
-            while (!take('}')) { take(','); take('"'); string key = quoted(); take(':'); json.fields[key] = value(); }
-        } else if (take('[')) {
-            while (!take(']')) { take(','); json.items.push_back(value()); }
-        } else if (take('"')) {
-            json.text = quoted();
-        } else {
-            size_t end = in.find_first_of(",]} ", at);
-            json.text = in.substr(at, end - at), at = end;
-        }
-        return json;
-    }
-};
+    return json;
+}
 
 // ---- Geometry [m] -----------------------------------------------------------------------------------------------------
 struct Vec { double x, y, z; };
@@ -63,8 +58,7 @@ Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 Vec operator*(double s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
 double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-double length(Vec a) { return std::sqrt(dot(a, a)); }
-Vec unit(Vec a) { return (1 / length(a)) * a; }
+Vec unit(Vec a) { return (1 / std::sqrt(dot(a, a))) * a; }
 Vec vec(const Json& json) { return {json.items.at(0).number(), json.items.at(1).number(), json.items.at(2).number()}; }
 
 struct Polygon {
@@ -103,19 +97,18 @@ struct Scene {
     explicit Scene(const Json& scene) {
         for (const Json& light : scene["light"].items) {
             if (light["kind"].text != "area") throw Unsupported("area-light has area lights only");
-            Polygon polygon = walls.emplace_back(light["shape"]);
+            const Polygon& polygon = walls.emplace_back(light["shape"]);
             for (size_t i = 2; i < polygon.corners.size(); i++) {  // a fan
                 Vec corner = polygon.corners[0], first = polygon.corners[i - 1] - corner, second = polygon.corners[i] - corner;
-                if (dot(cross(first, second), polygon.normal) < 0) throw Unsupported("area-light samples convex lights only");
-                double area = length(cross(first, second)) / 2;
+                double area = dot(cross(first, second), polygon.normal) / 2;
+                if (area < 0) throw Unsupported("area-light samples convex lights only");
                 lit.push_back({corner, first, second, polygon.normal, light["radiance"].number() * area});
                 power += lit.back().power;
             }
         }
         for (const Json& surface : scene["surface"].items) {
-            if (surface["radiance"].number() > 0) throw Unsupported("area-light has no surfaces that glow");
-            if (surface["reflectance"].number() > 0 && scene["max_bounces"].text != "0")
-                throw Unsupported("area-light has no reflections");
+            bool reflects = surface["reflectance"].number() > 0 && scene["max_bounces"].text != "0";
+            if (reflects || surface["radiance"].number() > 0) throw Unsupported("area-light has no surfaces that shine");
             walls.emplace_back(surface["shape"]);
         }
     }
@@ -154,7 +147,8 @@ string render(const Json& job) {
     long rows = std::stol(job["film"]["rows"].text), columns = std::stol(job["film"]["columns"].text);
     long samples = std::max(2L, std::stol(job["samples"].text));  // a variance needs two
     uint64_t seed = Random{std::stoull(job["seed"].text)}.bits();
-    string values, variances;
+    std::ostringstream values, variances;
+    values.precision(17), variances.precision(17);
     for (long element = 0; element < rows * columns; element++) {
         Random random{seed ^ Random{uint64_t(element)}.bits()};
         Vec origin = vec(plane ? film["origin"] : film["positions"].items.at(element)), u{0, 0, 0}, v{0, 0, 0};
@@ -167,23 +161,23 @@ string render(const Json& job) {
             mean += step / n;
             squares += step * (value - mean);
         }
-        char number[64];
-        snprintf(number, sizeof number, element ? ",%.17g" : "%.17g", mean), values += number;
-        snprintf(number, sizeof number, element ? ",%.17g" : "%.17g", squares / (samples - 1) / samples), variances += number;
+        const char* comma = element ? "," : "";
+        values << comma << mean, variances << comma << squares / (samples - 1) / samples;
     }
-    return "\"samples\":" + std::to_string(samples) + ",\"film\":[" + values + "],\"variance\":[" + variances + "]";
+    return "\"samples\":" + std::to_string(samples) + ",\"film\":[" + values.str() + "],\"variance\":[" + variances.str() + "]";
 }
 
 int main(int count, char** words) {
     if (count == 2 && string(words[1]) == "--version") return puts("area-light 1.0") < 0;
     for (string line, answer; std::getline(std::cin, line);) {
-        Json job = Parser{line}.value();
+        std::istringstream in(line);
+        Json job = parse(in);
+        string about = "{\"job\":\"" + job["job"].text + "\",\"digest\":\"" + job["digest"].text + "\",";
         try {
             answer = render(job);
         } catch (const Unsupported& reason) {
             answer = "\"unsupported\":\"" + string(reason.what()) + "\"";
         }
-        printf("{\"job\":\"%s\",\"digest\":\"%s\",%s}\n", job["job"].text.c_str(), job["digest"].text.c_str(), answer.c_str());
-        fflush(stdout);
+        std::cout << about << answer << "}" << std::endl;
     }
 }
