@@ -25,10 +25,10 @@ from lightproof.verdict import Outcome, Verdict
 def check(judged: Any, scene: Scene | str, samples: int = MOST_SAMPLES, budget: float = 300.0) -> Verdict:
     """Assert that the light of a scene is right; returns the verdict where it is.
 
-    `judged` is the name of a method; a function (scene, samples, seed) -> film or a class of methods, from the top level of a
-    file; or a film (n,) or (rows, columns), or replicates and ladders of films as `lightproof.judge` takes them. What renders
-    does so in a process of its own, with fixed seeds, in `budget` seconds and with at most `samples` per element. Raises
-    AssertionError with the verdict's reason, ValueError, SceneError, ReferenceError.
+    `judged` is the name of a method, or what else --with takes; a function (scene, samples, seed) -> film or a class of
+    methods, from the top level of a file; or a film (n,) or (rows, columns), or replicates and ladders of films as
+    `lightproof.judge` takes them. What renders does so in a process of its own, with fixed seeds, in `budget` seconds and with
+    at most `samples` per element. Raises AssertionError with the verdict's reason, ValueError, SceneError, ReferenceError.
     """
     __tracebackhide__ = True
     found, home = api.found(scene)
