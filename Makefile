@@ -1,6 +1,6 @@
 # `make report`: set up, run the default suite, write the page. `make test`: set up, run the tests.
 # Python 3.11 or 3.13; choose one with PYTHON=..., which renderers to install with EXTRAS=... (mitsuba, cycles, luxcore, radiance, pyrender, all),
-# what to run instead of the default suite with RUN='square-light --with mc-area'.
+# what to run instead of the default suite with RUN='square-light --with mc-area', which benchmarks with BENCH='--only growth'.
 
 PYTHON ?= $(shell for p in python3 python3.13 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info[:2] not in ((3, 11), (3, 13)))' 2>/dev/null && { echo $$p; break; }; done)
@@ -28,7 +28,7 @@ gate: setup
 	$(BIN)/lightproof gate
 
 bench: setup
-	$(BIN)/python benchmarks/throughput.py
+	$(BIN)/python benchmarks/run.py $(BENCH)
 
 soak: setup
 	$(BIN)/python benchmarks/soak.py

@@ -1,86 +1,67 @@
-"""Samples per second and efficiency of in-house estimators beside any renderer, interleaved on the same machine.
+"""Samples per second: `mc-area` against Mitsuba's fastest configuration, a hand-written Mitsuba loop, Cycles and the others.
 
-    python benchmarks/throughput.py --methods mc-area,path,mitsuba --scenes square-light,occluded-square --rounds 7
+The film has more elements than the scene's own, because that suits renderers which work on all pixels side by side. Those
+compared with each other take the same number of samples per element.
 """
 
 from __future__ import annotations
 
-import argparse
-import importlib
-import os
-import statistics
-import time
-
-import pandas as pd
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
 
 from lightproof import suite
-from lightproof.method import Method, Unavailable
-from lightproof.renderers.registry import METHODS
+from lightproof.renderers.registry import METHODS, Entry
 from lightproof.scene import Scene
+from lightproof.trial import Result, Status
+from race import Film, Track, failure, ours, phases, renderers
+from rows import Row
 
-TARGET = 0.25  # seconds of one film
-
-
-def main() -> None:
-    options = arguments()
-    rows = [row for name in options.scenes.split(",") for row in race(suite.default().scene(name), options)]
-    print(pd.DataFrame(rows).to_string(index=False, float_format="{:.4g}".format))
-
-
-def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--methods", default="mc-area,mc-cosine,path,mitsuba")
-    parser.add_argument("--scenes", default="square-light,occluded-square")
-    parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--threads", type=int, default=os.cpu_count())
-    return parser.parse_args()
+NAME = "throughput"
+SCENES = ("square-light", "occluded-square")
+RESOLUTION = (128, 96)
+MANY, FEW = 4096, 64  # samples per element: of what is compared with Mitsuba, and with the slower renderers
+LOOP = Entry("mitsuba-loop", f"{Path(__file__).parent / 'mitsuba_loop.py'}:Loop", worker="mitsuba-loop", extra="mitsuba")
+CHOOSING = 3  # rounds that choose Mitsuba's configuration
 
 
-def race(scene: Scene, options: argparse.Namespace) -> list[dict]:
-    """One row per method: the median over rounds, in each of which every method renders one film in turn."""
-    runners = {name: made for name in options.methods.split(",") if (made := ready(name, scene, options.threads))}
-    counts = {name: samples_in_time(made) for name, made in runners.items()}
-    rates: dict[str, list[float]] = {name: [] for name in runners}
-    for seed in range(1, options.rounds + 1):
-        for name, made in runners.items():
-            rates[name].append(rate(made, counts[name], seed) * scene.size)
-    return [
-        {"scene": scene.name, "method": name, "samples": counts[name], "million samples/s": statistics.median(values) / 1e6,
-         "slowest": min(values) / 1e6, "fastest": max(values) / 1e6}
-        for name, values in rates.items()
-    ]
+def measure(track: Track, add: Callable[[Iterable[Row]], None], rounds: int, quick: bool) -> None:
+    """One race a scene and number of samples."""
+    for name in SCENES[: 1 if quick else None]:
+        many, resolution = (MANY // 16, (32, 24)) if quick else (MANY, RESOLUTION)
+        scene = suite.default().scene(name)
+        scene = replace(scene, film=replace(scene.film, resolution=resolution))
+        slower = [entry for family, entries in renderers().items() if family != "mitsuba" for entry in entries[:1]]
+        race(track, scene, [*ours(), LOOP, *fastest(track, scene, many, add)], many, rounds, add)
+        race(track, scene, [METHODS["mc-area"], METHODS["mitsuba"], *slower], FEW, rounds, add)
 
 
-def ready(name: str, scene: Scene, threads: int) -> Method | None:
-    """The method with the scene prepared; None, with a word on why, where it cannot."""
-    module, cls = METHODS[name].target.split(":")
-    made = getattr(importlib.import_module(module), cls)(name, threads)
+def fastest(track: Track, scene: Scene, samples: int, add: Callable[[Iterable[Row]], None]) -> list[Entry]:
+    """Mitsuba's LLVM configuration with most samples a second, out of all; none where there is no Mitsuba."""
+    vectorised = [entry for entry in renderers()["mitsuba"] if entry.name not in ("mitsuba/scalar", "mitsuba/spectral")]
+    rows: list[Row] = []
+    race(track, scene, vectorised, samples, CHOOSING, rows.extend, name="choice")
+    rates = {row.method: row.median for row in rows if row.phase == "render" and row.each}
+    best = max(rates, key=rates.get, default=None)
+    add(replace(row, note="chosen") if row.method == best and row.phase == "render" else row for row in rows)
+    return [METHODS[best]] if best else []
+
+
+def race(track: Track, scene: Scene, entries: Sequence[Entry], samples: int, rounds: int,
+         add: Callable[[Iterable[Row]], None], name: str = NAME) -> None:
+    """Films in turn, round after round, after a first one of each that is not counted."""
+    firsts = {film: track.render(film, 0) for film in (Film(entry, scene, samples) for entry in track.there(entries))}
+    add(failure(name, result) for result in firsts.values() if result.status is not Status.OK)
+    taken: dict[Film, list[Result]] = {film: [] for film, result in firsts.items() if result.status is Status.OK}
     try:
-        made.open()
-    except Unavailable as error:
-        return print(f"{name}: {error}")
-    reason = made.unsupported(scene)
-    if reason:
-        return print(f"{scene.name}, {name}: unsupported: {reason}")
-    made.prepare(scene)
-    return made
+        track.race(taken, rounds)
+    finally:
+        for film, results in taken.items():
+            each = tuple(rate(result) for result in results)
+            rates = Row(name, scene.name, film.entry.name, "samples", samples, "render", "samples/s", each)
+            add([rates, *phases(name, firsts[film])])
 
 
-def samples_in_time(made: Method) -> int:
-    """Samples per element that take about TARGET seconds: the first power of 4 that does, after a first film."""
-    samples = 16
-    made.render(samples, 1)
-    while samples < 4**14 and samples / rate(made, samples, 1) < TARGET:
-        samples *= 4
-    return samples
-
-
-def rate(made: Method, samples: int, seed: int) -> float:
-    """Samples per element and second of one film."""
-    start = time.perf_counter()
-    drawn = made.render(samples, seed).samples
-    return drawn / (time.perf_counter() - start)
-
-
-if __name__ == "__main__":
-    main()
+def rate(result: Result) -> float:
+    """Samples a second over all elements."""
+    return result.samples * result.film.size / result.seconds["render"]

@@ -1,0 +1,133 @@
+"""Time to a given error: every in-house method and every renderer at its best configuration, on the same scenes.
+
+Each climbs a ladder of samples until its error is small enough or a film takes too long; then all films of all ladders are
+rendered in turn, once a round, with a seed of their own each time. Errors are fractions of the tolerance scale, against the
+proven reference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+
+from ladders import DETERMINISTIC, ERRORS, Ladder, ladders
+from lightproof import suite
+from lightproof.ladder import Scale
+from lightproof.ladder import scale as unit_of
+from lightproof.references import ReferenceError
+from lightproof.renderers.registry import Entry
+from lightproof.scene import Scene
+from lightproof.scene_file import BASE
+from lightproof.trial import Result, Status
+from race import Film, Track, failure, ours, phases, renderers
+from rows import Estimate, Row
+
+NAME = "accuracy"
+TAGS = ("direct", "shadow", "furnace")
+FIRST, FACTOR, MOST = 1, 4, 4**15  # samples per element
+FEWEST = 5  # steps, whatever they take: fewer do not tell how the error falls
+ENOUGH = 0.5 * min(ERRORS)
+OURS_SHARE = 0.2  # of a renderer's time that a film of ours may take: there are many of them, and the best need far less
+CHOICE_SHARE = 0.2  # of a renderer's time that a film may take while its configuration is chosen
+CHOICE = 0.001  # error that a configuration is chosen for
+
+Add = Callable[[Iterable[Row]], None]
+
+
+def measure(track: Track, add: Add, rounds: int, quick: bool, everything: bool = False) -> None:
+    """Scene by scene; one without a reference is told of and left out."""
+    chosen = [scene for scene in suite.default().scenes() if is_asked(scene, everything)]
+    for scene in chosen[:1] if quick else chosen:
+        try:
+            reference = suite.default().reference(scene)
+        except ReferenceError as error:
+            track.tell(str(error))
+            continue
+        track.tell(f"{NAME}: {scene.name}")
+        race(track, scene, unit_of(scene, reference), add, rounds)
+
+
+def is_asked(scene: Scene, everything: bool) -> bool:
+    """The quick base cases of direct light, shadows and furnaces, or all of those."""
+    return bool(set(scene.tags) & set(TAGS)) and (everything or ("quick" in scene.tags and scene.case == BASE))
+
+
+def race(track: Track, scene: Scene, scale: Scale, add: Add, rounds: int) -> None:
+    """Every method's ladder, then all their films in turn."""
+    climbs = [climb(track, scene, scale, entry, OURS_SHARE * track.seconds) for entry in track.there(ours())]
+    climbs += [climb(track, scene, scale, entry, track.seconds) for entry in best(track, scene, scale, add)]
+    taken: dict[Film, list[Result]] = {}
+    for films, results in climbs:
+        add(failure(NAME, result) for result in results if result.status is not Status.OK)
+        whole = [film for film, result in zip(films, results, strict=True) if result.status is Status.OK]
+        add(phases(NAME, results[0]) if whole else [])
+        taken |= {film: [] for film in whole}
+    try:
+        track.race(taken, rounds)
+    finally:
+        measured = [row for film, results in taken.items() for row in rows(film, results, scale)]
+        add([*measured, *times(ladders(measured))])
+
+
+def climb(track: Track, scene: Scene, scale: Scale, entry: Entry, seconds: float) -> tuple[list[Film], list[Result]]:
+    """One film a step, until the error is small enough or the next film would take more than `seconds`."""
+    films: list[Film] = []
+    results: list[Result] = []
+    samples = FIRST
+    while samples <= MOST:
+        films.append(Film(entry, scene, samples))
+        results.append(track.render(films[-1], 0))
+        if results[-1].status is not Status.OK or rms(results[-1], scale) <= ENOUGH:
+            break
+        if len(films) >= FEWEST and FACTOR * results[-1].seconds["render"] > seconds:
+            break
+        samples *= FACTOR
+    return films, results
+
+
+def best(track: Track, scene: Scene, scale: Scale, add: Add) -> list[Entry]:
+    """Each renderer's configuration that comes soonest to an error of `CHOICE`, by a ladder of one film a step."""
+    return [entry for configurations in renderers().values()
+            if (entry := choice(track, scene, scale, track.there(configurations), add))]
+
+
+def choice(track: Track, scene: Scene, scale: Scale, configurations: Sequence[Entry], add: Add) -> Entry | None:
+    """The best of a renderer's configurations; the only one without a try; None where there is none, or none that can."""
+    if len(configurations) < 2:
+        return configurations[0] if configurations else None
+    found: dict[Entry, float] = {}
+    for entry in configurations:
+        films, results = climb(track, scene, scale, entry, CHOICE_SHARE * track.seconds)
+        tried = [row for film, result in zip(films, results, strict=True) for row in rows(film, ok(result), scale)]
+        for one in ladders(tried):
+            found[entry] = one.time_to(CHOICE)
+    chosen = min(found, key=found.get, default=None)
+    add(Row("choice", scene.name, entry.name, "rms error", CHOICE, "render", "s", estimate=Estimate(seconds),
+            note="chosen" if entry == chosen else "") for entry, seconds in found.items())
+    return chosen
+
+
+def ok(result: Result) -> list[Result]:
+    """The result, if it is a film."""
+    return [result] if result.status is Status.OK else []
+
+
+def rows(film: Film, results: Sequence[Result], scale: Scale) -> list[Row]:
+    """Render time and error of one film in every round."""
+    about = (NAME, film.scene.name, film.entry.name, "samples", film.samples)
+    note = DETERMINISTIC if any(result.deterministic for result in results) else ""
+    return [Row(*about, "render", "s", tuple(result.seconds["render"] for result in results)),
+            Row(*about, "error", "1", tuple(rms(result, scale) for result in results), note)]
+
+
+def rms(result: Result, scale: Scale) -> float:
+    """Root mean square over the elements of a film's error, as a fraction of the tolerance scale."""
+    return float(np.sqrt((((result.film - scale.value) / scale.unit) ** 2).mean()))
+
+
+def times(climbed: Iterable[Ladder]) -> list[Row]:
+    """Seconds to each of `ERRORS`, and how they are known."""
+    return [Row(NAME, one.scene, one.method, "rms error", error, "render", "s", note=one.kind(error),
+                estimate=one.estimate(error))
+            for one in climbed for error in ERRORS]

@@ -1,0 +1,126 @@
+"""How time grows with elements, samples, lights, blockers and threads, and whether memory grows with samples.
+
+Every method goes on until a film takes too long, or until it refuses. Lights and blockers are many small squares between the
+same floor and lamp, so that the scene stays what it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lightproof import scene_file, suite
+from lightproof.renderers.registry import METHODS, Entry
+from lightproof.scene import Scene
+from lightproof.trial import Result, Status
+from race import Film, Track, failure
+from rows import Row
+
+NAME = "growth"
+SHARES = {"mc-area": 1.0, "mc-area/sobol": 1.0, "analytic": 1 / 16, "mitsuba": 1.0}  # of the samples; nodes are worth more
+SCENE = "square-light"
+FEW_SAMPLES, MORE_SAMPLES = 64, 1024
+GRID = [16, 12]
+ELEMENTS = ([1, 1], [4, 3], [16, 12], [64, 48], [256, 192], [1000, 1000])
+SAMPLES = tuple(4**power for power in range(3, 12))
+COUNTS = (1, 3, 10, 30, 100, 300, 1000)
+SIDE = 0.7  # of its place, of a small square
+
+Add = Callable[[Iterable[Row]], None]
+
+
+@dataclass(frozen=True)
+class Point:
+    """Where a curve is measured: what is varied, how much of it there is, and the scene and samples per element for it."""
+
+    parameter: str
+    amount: int
+    scene: Scene
+    samples: int
+
+
+def measure(track: Track, add: Add, rounds: int, quick: bool, tracks: dict[int, Track]) -> None:
+    """Curve by curve; `tracks` has workers with other numbers of threads."""
+    entries = track.there(METHODS[name] for name in SHARES)
+    for points in (elements(), samples(), lights(), blockers()):
+        curve(track, list(points)[: 2 if quick else None], entries, add, rounds)
+    for threads, other in tracks.items():
+        point = Point("threads", threads, gridded([64, 48]), MORE_SAMPLES // (16 if quick else 1))
+        curve(other, [point], other.there(entries), add, rounds)
+
+
+def curve(track: Track, points: list[Point], entries: list[Entry], add: Add, rounds: int) -> None:
+    """Every method at every point, in turn; a method that took too long, or failed, goes no further."""
+    running = list(entries)
+    for point in points:
+        track.tell(f"{NAME}: {point.parameter} {point.amount:,}")
+        films = [Film(entry, point.scene, max(1, round(SHARES[entry.name] * point.samples))) for entry in running]
+        firsts = {film: track.render(film, 0) for film in films}
+        add(failure(NAME, result) for result in firsts.values() if result.status is not Status.OK)
+        taken: dict[Film, list[Result]] = {film: [] for film, result in firsts.items() if result.status is Status.OK}
+        try:
+            track.race(taken, rounds)
+        finally:
+            add(row for film, results in taken.items() for row in rows(point, film, results))
+        running = [film.entry for film, results in taken.items() if results and results[-1].seconds["render"] < track.seconds]
+
+
+def rows(point: Point, film: Film, results: list[Result]) -> list[Row]:
+    """Render time and the worker's largest memory."""
+    about = (NAME, point.scene.name, film.entry.name, point.parameter, point.amount)
+    return [Row(*about, "render", "s", tuple(result.seconds["render"] for result in results)),
+            Row(*about, "memory", "MB", tuple(result.peak_memory_mb for result in results))]
+
+
+def elements() -> Iterator[Point]:
+    for resolution in ELEMENTS:
+        yield Point("elements", int(np.prod(resolution)), gridded(resolution), FEW_SAMPLES)
+
+
+def samples() -> Iterator[Point]:
+    for number in SAMPLES:
+        yield Point("samples", number, gridded(GRID), number)
+
+
+def lights() -> Iterator[Point]:
+    """The lamp cut into so many small ones; samples per element are those of one lamp times their number."""
+    for number in COUNTS:
+        table = base()
+        lamp = table["light"].pop()
+        corners = np.array(lamp["shape"]["vertices"])
+        for place, square in enumerate(squares(corners, number)):
+            shape = {"type": "polygon", "vertices": square}
+            table["light"].append({"id": f"lamp-{place}", "kind": "area", "radiance": lamp["radiance"], "shape": shape})
+        yield Point("lights", number, scene_file.from_table(table, "many-lights"), FEW_SAMPLES * number)
+
+
+def blockers() -> Iterator[Point]:
+    """Small squares half way between lamp and floor."""
+    level = np.array([[-0.6, -0.6, 0.6], [-0.6, 0.6, 0.6], [0.6, 0.6, 0.6], [0.6, -0.6, 0.6]])
+    for number in COUNTS:
+        table = base()
+        table["surface"] = [{"id": f"blocker-{place}", "reflectance": 0.0, "shape": {"type": "polygon", "vertices": square}}
+                            for place, square in enumerate(squares(level, number))]
+        yield Point("blockers", number, scene_file.from_table(table, "many-blockers"), MORE_SAMPLES)
+
+
+def squares(corners: np.ndarray, number: int) -> list[list[list[float]]]:
+    """The corners of so many small copies of a parallelogram (4, 3), side by side in it."""
+    side = int(np.ceil(np.sqrt(number)))
+    a, b, _, d = corners
+    parts = SIDE / side * (corners - corners.mean(axis=0))
+    return [(a + (place % side + 0.5) / side * (b - a) + (place // side + 0.5) / side * (d - a) + parts).tolist()
+            for place in range(number)]
+
+
+def gridded(resolution: list[int]) -> Scene:
+    table = base()
+    table["film"]["resolution"] = resolution
+    return scene_file.from_table(table, SCENE)
+
+
+def base() -> dict[str, Any]:
+    return suite.default().scene(SCENE).to_table()

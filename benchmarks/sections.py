@@ -1,0 +1,144 @@
+"""The sections of the page: what each benchmark found, as charts with their tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import plots
+from ladders import AT_MOST, ERRORS, EXTRAPOLATED, MEASURED, NEVER, ladders
+from lightproof.reporting import wording
+from powers import Power, fitted
+from rows import Estimate, Row
+
+SIGNS = {MEASURED: "", AT_MOST: "≤ ", EXTRAPOLATED: "~ ", NEVER: ""}
+WHOLE = "the whole loop"
+COUNTED = ("compiled", "hits", "misses")
+
+
+@dataclass(frozen=True)
+class Part:
+    """A chart with its title and the table below it: `head` and `body` of the table."""
+
+    title: str
+    chart: dict[str, Any] | None
+    head: Sequence[str] = ()
+    body: Sequence[Sequence[str]] = ()
+
+
+def interval(estimate: Estimate) -> str:
+    """From where to where; empty where that is not known."""
+    known = not math.isnan(estimate.low + estimate.high)
+    return f"{wording.number(estimate.low)} to {wording.number(estimate.high)}" if known else ""
+
+
+def throughput(rows: Sequence[Row]) -> list[Part]:
+    """A chart for each scene and number of samples."""
+    races: dict[tuple[str, float], list[Row]] = {}
+    for row in rows:
+        if row.unit == "samples/s" and row.each:
+            races.setdefault((row.scene, row.value), []).append(row)
+    once = {(row.scene, row.value, row.method, row.phase): row.median for row in rows if row.phase in ("setup", "compile")}
+    parts = []
+    for (scene, samples), raced in races.items():
+        body = [[row.method, wording.count(row.median), " to ".join(map(wording.count, row.interval)),
+                 *(wording.seconds(once.get((scene, samples, row.method, phase), math.nan)) for phase in ("setup", "compile"))]
+                for row in sorted(raced, key=lambda row: -row.median)]
+        title = f"{scene}, {samples:,.0f} samples per element"
+        parts.append(Part(title, plots.rates(raced), ("method", "samples/s", "interval", "set-up", "compile"), body))
+    return parts
+
+
+def choice(rows: Sequence[Row]) -> list[Part]:
+    """What every configuration came to, and which took part."""
+    body = [[row.scene, row.method, wording.count(row.median) if row.unit == "samples/s" else wording.seconds(row.median),
+             row.note] for row in rows if row.phase == "render" and math.isfinite(row.median)]
+    return [Part("Tried", None, ("scene", "configuration", "samples/s, or time to 0.1 %", ""), body)] if body else []
+
+
+def accuracy(rows: Sequence[Row]) -> list[Part]:
+    """A chart for each scene, and the times that it comes to."""
+    climbed = ladders(rows)
+    methods = list(dict.fromkeys(one.method for one in climbed))
+    times = {(row.scene, row.method, row.value): row for row in rows if row.parameter == "rms error"}
+    parts = []
+    for scene in dict.fromkeys(one.scene for one in climbed):
+        here = [one for one in climbed if one.scene == scene]
+        body = [[one.method, *(_time(times.get((scene, one.method, error))) for error in ERRORS)]
+                for one in sorted(here, key=lambda one: (one.time_to(ERRORS[1]), one.method))]
+        parts.append(Part(scene, plots.races(here, methods), ("method", *(f"to {100 * error:g} %" for error in ERRORS)), body))
+    return parts
+
+
+def _time(row: Row | None) -> str:
+    if row is None or not math.isfinite(row.median):
+        return "—" if row is None else "never"
+    return f"{SIGNS[row.note]}{wording.seconds(row.median)}{_span(*row.interval)}"
+
+
+def _span(low: float, high: float) -> str:
+    return "" if math.isnan(low + high) else f" ({wording.seconds(low)} to {wording.seconds(high)})"
+
+
+def hardware(rows: Sequence[Row]) -> list[Part]:
+    """The loop's variants as a chart, with what a sample is made of."""
+    rates = [row for row in rows if row.unit == "samples/s" and row.each]
+    peak = [row for row in rows if row.unit == "operations/s" and row.each]
+    whole = next((row.median for row in rates if row.method == WHOLE), math.nan)
+    body = [[row.method, f"{wording.number(1e12 / row.median)} ps", wording.percent(whole / row.median)] for row in rates]
+    made = [[row.method, row.parameter, wording.number(row.median)] for row in rows if row.phase == "operations" and not row.note]
+    made += [[row.method, "floating-point operations per second", wording.count(row.median)] for row in peak]
+    loop = Part("Parts of the loop left out", plots.rates(rates) if rates else None,
+                ("", "a sample takes", "of the whole loop's time"), body)
+    return [loop, Part("What a sample is made of", None, ("", "operations", "number"), made)]
+
+
+def growth(rows: Sequence[Row]) -> list[Part]:
+    """A chart for each thing that was varied, with exponents and memory."""
+    timed = [row for row in rows if row.phase == "render" and row.each]
+    methods = list(dict.fromkeys(row.method for row in timed))
+    parts = []
+    for parameter in dict.fromkeys(row.parameter for row in timed):
+        here = [row for row in timed if row.parameter == parameter]
+        found = {method: fitted([row for row in here if row.method == method]) for method in methods}
+        powers: dict[str, Power] = {method: power for method, power in found.items() if power}
+        memory = {row.method: row for row in rows if row.parameter == parameter and row.phase == "memory" and row.each}
+        body = [[method, wording.number(power.exponent.value), interval(power.exponent),
+                 wording.seconds(power.overhead) if power.overhead else "", f"{wording.number(memory[method].median)} MB"]
+                for method, power in powers.items()]
+        parts.append(Part(f"Time against {parameter}", plots.curves(here, powers, methods) if powers else None,
+                          ("method", "exponent", "interval", "overhead", "memory at the end"), body))
+    return parts
+
+
+def cache(rows: Sequence[Row]) -> list[Part]:
+    """A line a kernel."""
+    found: dict[float, dict[str, Row]] = {}
+    for row in rows:
+        found.setdefault(row.value, {})[row.phase] = row
+    body = [[f"{kind['render'].scene}, {kind['render'].method}", wording.seconds(kind["render"].median),
+             _span(*kind["render"].interval).strip(" ()"), *(wording.number(kind[name].median) for name in COUNTED)]
+            for _, kind in sorted(found.items()) if kind["render"].each]
+    return [Part("Fresh processes", None, ("kernel", "time", "interval", *COUNTED), body)] if body else []
+
+
+SECTIONS: dict[str, tuple[str, Callable[[Sequence[Row]], list[Part]]]] = {
+    "throughput": (
+        "Samples per second over all elements and threads. All in one chart take the same number of samples per element, on a"
+        " film of more elements than the scene's own.", throughput),
+    "accuracy": (
+        "Render time of one film until its rms error is so many per cent of the tolerance scale, against the proven light."
+        " ≤: the first step of the ladder was better than that; ~: extrapolated by the slope of the last steps; never: the"
+        " error has stopped falling.", accuracy),
+    "choice": ("Configurations of renderers, tried on every scene; the best took part.", choice),
+    "hardware": (
+        "The multiply-add peak is measured on the same threads in the same rounds; a multiply-add counts as two operations.",
+        hardware),
+    "growth": (
+        "Lines are fitted: time = overhead + factor × amount ^ exponent. Lights have a fixed number of samples each.", growth),
+    "cache": (
+        "Processes that start from nothing and find the compiled kernels on disk. The first kernel's time runs from the moment"
+        " when numba is imported.", cache),
+}

@@ -1,0 +1,85 @@
+"""The inner loop of `mc-area` under a flat light with parts of it left out, to see what each part costs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numba import njit
+
+from lightproof.estimators.kernel import cell_of, on_cell
+from lightproof.estimators.lamps import arriving, faced, parameters
+from lightproof.estimators.points import BLOCK, drawn, opened
+from lightproof.estimators.vectors import along, dot, like, sub
+
+inline = njit(fastmath=True, error_model="numpy")
+
+
+@inline
+def as_it_is(i, block, model):
+    return drawn(i, block, model)
+
+
+@inline
+def counted(i, block, model):
+    """The block's keys plus the sample's number, neither hashed nor multiplied."""
+    at = np.uint32(i)
+    return (like(model, np.int32(np.uint32(at + block[0]))), like(model, np.int32(np.uint32(at + block[1]))),
+            like(model, np.int32(np.uint32(at + block[2]))), like(model, np.int32(np.uint32(at + block[3]))))
+
+
+@inline
+def divided(lamp, x, s, t):
+    return arriving(lamp, x, s, t)[0]
+
+
+@inline
+def multiplied(lamp, x, s, t):
+    """The same with a product in the place of the quotient: a wrong number, at the speed of a right one."""
+    a, b = parameters(lamp.shape, s, t)
+    d = sub(along(along(lamp.shape.center, a, lamp.shape.u), b, lamp.shape.v), x)
+    r2 = dot(d, d)
+    zero = like(r2, 0)
+    before = dot(x, lamp.shape.normal) - dot(lamp.shape.center, lamp.shape.normal)
+    return max(d[2], zero) * max(before, zero) * (r2 * r2)
+
+
+@inline
+def with_square(total, square, f):
+    return total + f, square + f * f
+
+
+@inline
+def alone(total, square, f):
+    return total + f, square
+
+
+def compiled(draw: Callable, value: Callable, add: Callable) -> Callable:
+    """The loop of these parts: (lamp, receivers, points, blocks, model) -> a sum over elements, blocks and samples."""
+
+    @njit(fastmath=True, error_model="numpy", nogil=True)
+    def loop(lamp, receivers, points, blocks, model):
+        whole = 0.0
+        for e in range(len(receivers)):
+            row = receivers[e]
+            frame = (row[3], row[4], row[5]), (row[6], row[7], row[8]), (row[9], row[10], row[11])
+            seen, cell = faced(lamp, (row[0], row[1], row[2]), frame, model), cell_of(receivers, None, e, model)
+            for number in range(blocks):
+                block = opened(points, e, number)
+                total, square = like(model, 0), like(model, 0)
+                for i in range(BLOCK):
+                    s, t, p, q = draw(i, block, model)
+                    total, square = add(total, square, value(seen, on_cell(cell, p, q), s, t))
+                whole += total + square
+        return whole
+
+    return loop
+
+
+VARIANTS = {
+    "the whole loop": (as_it_is, divided, with_square),
+    "without random numbers": (counted, divided, with_square),
+    "without the division": (as_it_is, multiplied, with_square),
+    "without the variance": (as_it_is, divided, alone),
+    "without all three": (counted, multiplied, alone),
+}

@@ -1,0 +1,186 @@
+"""The benchmarks' arithmetic, from fake measurements, and a page from a tiny real one. Nothing here depends on the clock."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lightproof import ladder, suite
+from lightproof.renderers.pool import Pool
+from lightproof.renderers.registry import METHODS
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "benchmarks"))
+
+import accuracy
+import growth
+import operations
+import page
+import throughput
+from claims import MET, MISSED, OPEN, UNMEASURED, claims
+from ladders import AT_MOST, EXTRAPOLATED, MEASURED, NEVER, Ladder
+from powers import fitted
+from race import Film, Track
+from rows import Estimate, Row, Table, read
+
+SAMPLES = 4.0 ** np.arange(6)
+LOOP = """
+.LBB0_1:
+\tvpmulld\t%zmm0, %zmm1, %zmm1
+\tvcvtdq2ps\t%zmm1, %zmm1
+\tvcvtdq2ps\t%zmm2, %zmm2
+\tvcvtdq2ps\t%zmm3, %zmm3
+\tvcvtdq2ps\t%zmm4, %zmm4
+\tvfmadd231ps\t%zmm1, %zmm2, %zmm3
+\tvmulps\t(%rax), %zmm3, %zmm3
+\tvdivps\t%zmm3, %zmm4, %zmm4
+\tjne\t.LBB0_1
+\tvaddps\t%zmm4, %zmm5, %zmm5
+"""
+
+
+def rate(method: str, *each: float, samples: float = 4096) -> Row:
+    return Row("throughput", "square-light", method, "samples", samples, "render", "samples/s", each)
+
+
+def timed(scene: str, method: str, per_sample: float, error: float, exponent: float = -0.5, note: str = "") -> list[Row]:
+    """A ladder of three equal rounds: seconds in proportion to samples, errors by a power of them."""
+    about = ("accuracy", scene, method, "samples")
+    return [row for samples in SAMPLES for row in (
+        Row(*about, samples, "render", "s", (per_sample * samples,) * 3),
+        Row(*about, samples, "error", "1", (error * samples**exponent,) * 3, note),
+    )]
+
+
+def climbed(error: float, exponent: float) -> Ladder:
+    shape = np.ones((3, 1))
+    return Ladder("scene", "method", SAMPLES, shape * SAMPLES * 1e-3, shape * error * SAMPLES**exponent, False)
+
+
+def test_throughput_claims_are_ratios_of_medians():
+    """120 over 1 is met, 10 over 1 missed; rounds that spread over the target leave it open; fewer samples have no target."""
+    rows = [rate("mc-area", 119, 120, 121), rate("mitsuba/sobol", 1, 1, 1), rate("mitsuba-loop", 12, 12, 12),
+            rate("mc-area", 10, 10, 10, samples=64), rate("mitsuba", 1, 1, 1, samples=64)]
+    found = {claim.text.split(",")[0]: claim for claim in claims(rows) if claim.target}
+    outcomes = {text: claim.outcome for text, claim in found.items()}
+    assert outcomes == {"mc-area over mitsuba/sobol": MET, "mc-area over mitsuba-loop": MISSED}
+    assert found["mc-area over mitsuba/sobol"].measured.value == 120
+    spread = [rate("mc-area", *range(80, 120, 5)), rate("mitsuba", *[1] * 8)]
+    assert [claim.outcome for claim in claims(spread)] == [OPEN]
+
+
+def test_time_to_error_claims_take_the_best_on_either_side():
+    """Errors N^-1/2: ours takes 1 us a sample, the faster renderer 200 us: 200 at 0.1 %, by sampling; at 0.01 % analytic, whose
+    first film of 2 us is better than that, is 10^10 us / 2 us ahead. A furnace scene needs 30 only."""
+    rows = [row for scene in ("square-light", "white-furnace-plane") for row in (
+        *timed(scene, "mc-area", 1e-6, 0.02), *timed(scene, "mc-cosine", 3e-6, 0.02), *timed(scene, "cycles", 9e-4, 0.02),
+        *timed(scene, "luxcore", 2e-4, 0.02), *timed(scene, "analytic", 2e-6, 1e-12, note="no noise"))]
+    found = claims(rows)
+    assert [(claim.target, claim.outcome) for claim in found] == [(100, MET), (1000, MET), (30, MET), (1000, MET)]
+    assert found[0].measured.value == pytest.approx(200) and "luxcore" in found[0].note and "mc-area" in found[0].note
+    assert found[1].measured.value == pytest.approx(2e-4 * (0.02 / 1e-4) ** 2 / 2e-6) and "analytic (at most)" in found[1].note
+
+
+def test_what_nobody_measured_is_neither_met_nor_missed():
+    found = claims(timed("square-light", "mc-area", 1e-6, 0.02))
+    assert {claim.outcome for claim in found} == {UNMEASURED} and "no renderer" in found[0].note
+
+
+def test_time_to_error_is_interpolated_extrapolated_or_never():
+    """Errors 0.02 N^-1/2 at 1 ms a sample: 1 % at N = 4, 0.1 % at N = 400, between steps; 0.01 % at N = 40,000 is beyond. An
+    error that stays has no time, and a better first step is a bound."""
+    falling = climbed(0.02, -0.5)
+    assert [falling.time_to(error) for error in (0.01, 0.001, 0.0001)] == pytest.approx([4e-3, 0.4, 40])
+    assert [falling.kind(error) for error in (0.5, 0.01, 0.001, 0.0001)] == [AT_MOST, MEASURED, MEASURED, EXTRAPOLATED]
+    assert climbed(0.02, 0).kind(0.01) == NEVER and np.isinf(climbed(0.02, 0).time_to(0.01))
+
+
+def test_exponents_are_fitted_beside_an_overhead():
+    """Seconds 1e-3 + 2e-7 x^1.5 over six decades."""
+    rows = [Row("growth", "s", "m", "blockers", x, "render", "s", (1e-3 + 2e-7 * x**1.5,) * 3) for x in 10.0 ** np.arange(7)]
+    power = fitted(rows)
+    assert (power.exponent.value, power.overhead) == pytest.approx((1.5, 1e-3), rel=1e-4)
+
+
+def test_operations_are_counted_in_the_loop_alone():
+    """Four conversions of 16 lanes are 16 samples: a multiply-add, a product and a quotient are 4 operations each, a product of
+    whole numbers 1; the sum behind the jump is outside."""
+    found = operations.count(LOOP)
+    assert (found.floating, found.whole, found.packed_multiply_adds, found.lanes) == (4, 1, 1, 16)
+    assert operations.count("add x0, x0, x1") is None
+
+
+def test_rows_come_back_from_the_csv(tmp_path):
+    rows = [rate("mc-area", 3, 1, 2), Row("growth", "a, b", "m", "error", 0.1, "render", "s", estimate=Estimate(1, 0.5, np.inf)),
+            Row("growth", "s", "m", "lights", 3, "error", "", note="it broke")]
+    with Table(tmp_path / "new" / "benchmarks.csv") as table:
+        table.add(rows)
+        assert read(tmp_path / "new" / "benchmarks.csv") == rows
+    assert (rows[0].median, rows[0].interval) == (2, (1, 3))
+
+
+@pytest.mark.parametrize("points", [growth.lights, growth.blockers])
+def test_grown_scenes_hold_what_they_say(points):
+    """So many lights or blockers, none on top of another: centres are farther apart than sides are long."""
+    point = next(point for point in points() if point.amount == 100)
+    shapes = [item.shape for item in (*point.scene.lights, *point.scene.surfaces)]
+    assert len(shapes) == (100 if point.parameter == "lights" else 101)
+    corners = np.array([shape.vertices for shape in shapes[-100:]])
+    centres, sides = corners.mean(axis=1), np.ptp(corners, axis=1)[:, :2]
+    gaps = np.abs(centres[:, None, :2] - centres[None, :, :2])
+    assert ((gaps > sides).any(axis=-1) | np.eye(100, dtype=bool)).all()
+
+
+@pytest.fixture
+def track(tmp_path):
+    with Pool(threads=1) as pool:
+        yield Track(pool, tmp_path, lambda message: None, seconds=0.001)
+
+
+def test_page_from_a_tiny_measurement(track, monkeypatch):
+    """Two of ours on a point light, one of them in a renderer's place: errors fall, and the page has what was measured."""
+    stranger = METHODS["mc-area/jitter"]
+    monkeypatch.setattr(accuracy, "ours", lambda: [METHODS["mc-area"]])
+    monkeypatch.setattr(accuracy, "renderers", lambda: {"stranger": [stranger]})
+    scene, rows = suite.default().scene("point-light"), []
+    accuracy.race(track, scene, ladder.scale(scene, suite.default().reference(scene)), rows.extend, rounds=2)
+    assert {row.method for row in rows} == {"mc-area", "mc-area/jitter"}
+    errors = [row.median for row in rows if row.phase == "error" and row.method == "mc-area"]
+    assert errors[0] > 4 * errors[-1] > 0
+    html = page.render(rows, {"Machine": "<here>"})
+    assert "point-light" in html and "&lt;here&gt;" in html and 'src="' not in html.split("<script>")[0]
+
+
+def test_what_was_measured_survives_an_interruption(track, monkeypatch):
+    """Interrupted in the second film of the first round: the first is kept."""
+    render, seen = track.render, []
+
+    def interrupted(film, turn):
+        seen.append(film)
+        if turn and len([one for one in seen if one == film]) > 1 and film.samples > 1:
+            raise KeyboardInterrupt
+        return render(film, turn)
+
+    monkeypatch.setattr(track, "render", interrupted)
+    monkeypatch.setattr(accuracy, "ours", lambda: [METHODS["mc-area"]])
+    monkeypatch.setattr(accuracy, "renderers", dict)
+    scene, rows = suite.default().scene("point-light"), []
+    with pytest.raises(KeyboardInterrupt):
+        accuracy.race(track, scene, ladder.scale(scene, suite.default().reference(scene)), rows.extend, rounds=2)
+    assert [row.value for row in rows if row.phase == "error" and row.each] == [1]
+
+
+def test_a_missing_renderer_is_told_and_left_out(track):
+    broken = METHODS["mitsuba"].__class__("broken", "nowhere.to.be.found:Method", worker="broken")
+    assert track.there([broken, METHODS["mc-area"]]) == [METHODS["mc-area"]] and "broken" in track.left_out
+
+
+def test_the_hand_written_loop_gives_the_right_light(track):
+    """Mitsuba's emitter sampling on the floor below a square light, 4,096 samples per element: the mean to 0.2 %."""
+    pytest.importorskip("mitsuba")
+    scene = suite.default().scene("occluded-square")
+    result = track.render(Film(throughput.LOOP, scene, 4096), 1)
+    assert result.message == ""
+    assert result.film.mean() == pytest.approx(suite.default().reference(scene).value.mean(), rel=2e-3)
