@@ -18,7 +18,7 @@ from PIL import Image
 
 from lightproof import reporting
 from lightproof.method import Unavailable
-from lightproof.reporting import charts, citations, page
+from lightproof.reporting import citations, front, page, race_chart, speed_page
 from lightproof.reporting.colours import LIGHT, SIGNED, film_image
 from lightproof.reporting.evaluation import Evaluation, evaluate
 from lightproof.reporting.families import Family, families
@@ -202,12 +202,13 @@ def test_a_certain_value_that_is_off_is_infinitely_many_standard_errors_off(eval
 def test_the_chart_has_a_point_for_each_step_and_a_line_at_the_tolerance(evaluation):
     """Five methods, four steps; what is below the floor is drawn on it."""
     cells = [cell for cell in evaluation.cells if cell.scene.id == "floor"]
-    chart = charts.error_against_time(cells, evaluation.methods, 0.01)
-    tolerance, points = sorted(chart["datasets"].values(), key=len)
+    chart = race_chart.error_against_time(cells, evaluation.methods, 0.01)
+    tolerance, fronts, points = sorted(chart["datasets"].values(), key=len)
     assert tolerance == [{"error": 1.0, "text": "tolerance 1 %"}]
-    assert Counter(point["method"].partition(" ")[0] for point in points)["mc-area"] == 4
-    assert min(point["error"] for point in points) == charts.FLOOR
-    assert charts.error_against_time([], evaluation.methods, 0.01) is None
+    assert Counter(point["method"] for point in points)["mc-area"] == 4
+    assert min(point["error"] for point in points) == pytest.approx(100 * front.FLOOR)
+    assert {corner["front"] for corner in fronts} == {front.ALL, front.SAMPLING, front.EXTERNAL}
+    assert race_chart.error_against_time([], evaluation.methods, 0.01) is None
 
 
 @pytest.mark.parametrize(("value", "end"), [(0.97, 1.0), (1.0, 1.0), (1.01, 1.2), (83.0, 100.0), (0.0, 1.0), (3e-7, 3e-7)])
@@ -238,15 +239,18 @@ def test_an_unfinished_step_does_not_speak_for_the_method(run):
     assert len(cell.verdict.steps) == 2
 
 
-def test_write_leaves_three_files_in_the_run(run, monkeypatch):
-    """The page and both tables, in the run's own folder."""
+def test_write_leaves_four_files_in_the_run(run, monkeypatch):
+    """Both pages and both tables, in the run's own folder."""
     from lightproof.reporting import pictures
 
     monkeypatch.setattr(pictures, "picture", lambda scene, cache_folder: picture(scene))
     record, suite = run
     path = reporting.write(record.folder, suite)
     assert path == record.folder / "index.html"
-    assert {"results.csv", "summary.csv", "index.html"} <= {file.name for file in record.folder.iterdir()}
+    assert {"results.csv", "summary.csv", "index.html", "speed.html"} <= {file.name for file in record.folder.iterdir()}
+
+
+MARKS = "(chart) => chart.querySelectorAll('.mark-symbol.role-mark path').length"
 
 
 @pytest.fixture(scope="module")
@@ -282,15 +286,29 @@ def opened(browser, html, tmp_path_factory):
     return browser
 
 
+@pytest.fixture(scope="module")
+def speed_opened(opened, evaluation, tmp_path_factory):
+    """The speed page on the same phone, scrolled to every chart in turn, so that all are drawn."""
+    from selenium.webdriver.support.wait import WebDriverWait
+
+    views = speed_page.views(evaluation)
+    path = tmp_path_factory.mktemp("browser") / "speed.html"
+    path.write_text(speed_page.render(views, evaluation, page.environment(), page.bundle()), encoding="utf-8")
+    opened.get(path.as_uri())
+    scroll = "const left = [...document.querySelectorAll('.chart')].find((chart) => !chart.querySelector('svg'));" \
+             "left?.scrollIntoView(); return !left"
+    WebDriverWait(opened, 60).until(lambda page: page.execute_script(scroll))
+    return opened
+
+
 def test_the_browser_reports_no_error(opened):
     assert opened.get_log("browser") == []
     assert opened.execute_script("return window.hacked") is None
 
 
 def test_every_chart_has_a_mark_for_each_measurement(opened):
-    """Cost: four passing methods (one of them biased) on three scenes; error against time: five methods of four steps."""
-    marks = "(chart) => chart.querySelectorAll('.mark-symbol.role-mark path').length"
-    assert opened.execute_script(f"return [...document.querySelectorAll('.chart')].map({marks})") == [12, 20, 20, 20]
+    """Cost: four passing methods (one of them biased) on three scenes."""
+    assert opened.execute_script(f"return [...document.querySelectorAll('.chart')].map({MARKS})")[:1] == [12]
 
 
 def test_the_browser_asks_the_network_for_nothing(opened):
@@ -317,3 +335,18 @@ def test_a_tap_on_a_verdict_shows_its_reason(opened):
     assert opened.execute_script(shown) == []
     opened.execute_script("document.querySelector('.matrix button:has(.unsupported)').click()")
     assert small_run.REFUSAL in opened.execute_script(shown)[0]
+
+
+def test_the_speed_page_is_sound_on_a_phone(speed_opened):
+    """After all other tests of the browser: no error, nothing from the network, no wider than the screen."""
+    assert speed_opened.get_log("browser") == []
+    assert speed_opened.execute_script("return window.hacked") is None
+    assert speed_opened.execute_script("return document.documentElement.scrollWidth") == 390
+
+
+def test_every_chart_of_speed_has_its_marks(speed_opened):
+    """A scene: five methods of four steps; four right methods at 1 %, analytic alone at 0.1 % and 0.01 % too; bars; the slopes of
+    the three that have an error."""
+    assert speed_opened.execute_script(f"return [...document.querySelectorAll('.chart')].map({MARKS})") == 3 * [20, 6, 0, 3]
+    bars = "document.querySelectorAll('.rows > div:nth-child(2) .mark-rect path').length"
+    assert speed_opened.execute_script(f"return {bars}") == 3 * 3

@@ -11,13 +11,14 @@ from lightproof.suite import Suite
 
 
 def write(run_folder: Path, suite: Suite) -> Path:
-    """Judge a run anew and write results.csv, summary.csv and index.html into its folder; returns the page's path.
+    """Judge a run anew and write results.csv, summary.csv, index.html and, where times are known, speed.html into its folder;
+    returns the path of index.html.
 
     Raises StoreError, FilmError and UnitsError where the folder is no run, or a record is broken, OSError where it cannot be
     written.
     """
     # Here and not above: pandas and altair take a second to import, which the process that renders a picture need not wait for.
-    from lightproof.reporting import citations, page, tables, units
+    from lightproof.reporting import citations, page, speed_page, tables, units
     from lightproof.reporting.evaluation import evaluate
     from lightproof.reporting.pictures import picture
 
@@ -26,7 +27,12 @@ def write(run_folder: Path, suite: Suite) -> Path:
     tables.summary(evaluation).to_csv(run_folder / "summary.csv", index=False)
     bibliography = citations.read(suite.root / "references" / "references.bib")
     factors = [*units.read(units.FILE), *units.measure(evaluation)]
-    html = page.render(evaluation, bibliography, functools.partial(picture, cache_folder=_picture_cache()), factors)
+    speed = speed_page.views(evaluation)
+    if speed:
+        html = speed_page.render(speed, evaluation, page.environment(), page.bundle())
+        (run_folder / "speed.html").write_text(html, encoding="utf-8")
+    draw = functools.partial(picture, cache_folder=_picture_cache())
+    html = page.render(evaluation, bibliography, draw, factors, speed_page.sentences(speed))
     path = run_folder / "index.html"
     path.write_text(html, encoding="utf-8")
     return path

@@ -17,7 +17,7 @@ from lightproof.scene import Scene
 from lightproof.store import Run, Store
 from lightproof.suite import Suite
 from lightproof.trial import Result, Status
-from lightproof.verdict import Step, Verdict
+from lightproof.verdict import Outcome, Step, Verdict
 
 
 @dataclass(frozen=True)
@@ -91,6 +91,11 @@ class Cell:
         difference = self.film - self.reference.value
         exact = np.where(difference == 0, 0.0, np.copysign(np.inf, difference))
         return np.divide(difference, self.standard_error, out=exact, where=self.standard_error > 0)
+
+    @property
+    def usable(self) -> bool:
+        """Whether its speed is worth knowing: its light is not known to be wrong, and what it took is."""
+        return self.verdict.outcome in (Outcome.PASS, Outcome.UNDECIDED) and self.timed and bool(self.final and self.drawable)
 
     @property
     def drawable(self) -> list[Step]:

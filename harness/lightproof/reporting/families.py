@@ -26,8 +26,7 @@ class Family:
     def best(self, evaluation: Evaluation, scene: Scene) -> Cell | None:
         """The cell with the best verdict on a scene, of those the one that is soonest at an error of 0.1 %, or else of 1 %; None
         where the run has no result."""
-        cells = (evaluation.cell(scene, method) for method in self.methods)
-        return min(filter(None, cells), key=_standing, default=None)
+        return best(filter(None, (evaluation.cell(scene, method) for method in self.methods)))
 
 
 def families(methods: Iterable[str]) -> list[Family]:
@@ -43,14 +42,23 @@ def singly(methods: Iterable[str]) -> list[Family]:
     return [Family(method, (method,)) for method in methods]
 
 
+def best(cells: Iterable[Cell]) -> Cell | None:
+    """The cell with the best verdict, of those the soonest; None where there is none."""
+    return min(cells, key=_standing, default=None)
+
+
 def _standing(cell: Cell) -> tuple[float, ...]:
     times = [cell.seconds_to(error) for error in ERRORS] if cell.verdict.steps else []
     return BEST_FIRST.index(cell.verdict.outcome), *(math.inf if time is None else time for time in times)
 
 
+def is_ours(method: str) -> bool:
+    """Whether a method is one of the in-house estimators, and no renderer."""
+    return method in METHODS and METHODS[method].worker == OURS
+
+
 def _name(method: str) -> str:
-    ours = method in METHODS and METHODS[method].worker == OURS
-    return OUR_NAME if ours else method.partition("/")[0]
+    return OUR_NAME if is_ours(method) else method.partition("/")[0]
 
 
 def _rank(name: str, methods: list[str]) -> int:

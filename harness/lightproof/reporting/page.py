@@ -13,7 +13,7 @@ import vl_convert
 from markupsafe import Markup
 
 from lightproof.method import Unavailable
-from lightproof.reporting import charts, units, wording
+from lightproof.reporting import charts, theory, units, wording
 from lightproof.reporting.citations import Citation
 from lightproof.reporting.colours import shrunk
 from lightproof.reporting.evaluation import Cell, Evaluation
@@ -31,13 +31,14 @@ OTHERWISE = {Outcome.UNSUPPORTED: "unsupported", Outcome.ERROR: "ended in an err
 
 
 def render(evaluation: Evaluation, bibliography: Mapping[str, Citation], picture: Callable[[Scene], bytes],
-           factors: Sequence[Factor] = ()) -> str:
+           factors: Sequence[Factor] = (), fast: Sequence[str] = ()) -> str:
     """The whole page. `picture` gives a scene's set-up as PNG bytes; where it raises, the page says why there is none.
-    `factors` are the units of renderers as they were measured, in that order."""
+    `factors` are the units of renderers as they were measured, in that order; `fast` says in sentences what is fastest, where the
+    speed page says more."""
     views = [_view(evaluation, scene, bibliography, picture) for scene in evaluation.scenes]
     counts = Counter(cell.verdict.outcome for cell in evaluation.cells)
     now = units.current(factors, evaluation.run.versions)
-    return _environment().get_template("page.html.j2").render(
+    return environment().get_template("page.html.j2").render(
         evaluation=evaluation,
         run=evaluation.run,
         views=views,
@@ -50,12 +51,13 @@ def render(evaluation: Evaluation, bibliography: Mapping[str, Citation], picture
         lights=sorted({factor.light for factor in now}),
         alarms=units.alarms(factors, now),
         cost=charts.time_to_one_percent(evaluation.cells, evaluation.methods),
-        bundle=_bundle(),
+        fast=fast,
+        bundle=bundle(),
     )
 
 
 @cache
-def _bundle() -> Markup:
+def bundle() -> Markup:
     """Vega, Vega-Lite and their embedding, for the page's one script."""
     return Markup(vl_convert.javascript_bundle())
 
@@ -70,8 +72,9 @@ def _view(evaluation: Evaluation, scene: Scene, bibliography: Mapping[str, Citat
     return SceneView(scene, cells, evaluation.methods, image, missing, bibliography)
 
 
-def _environment() -> jinja2.Environment:
-    environment = jinja2.Environment(
+def environment() -> jinja2.Environment:
+    """What the templates know."""
+    made = jinja2.Environment(
         loader=jinja2.PackageLoader("lightproof.reporting"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
@@ -79,12 +82,12 @@ def _environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    spoken = ("number", "percent", "seconds", "count", "moment", "triangles")
-    environment.filters |= {name: getattr(wording, name) for name in spoken}
-    own = (charts.slope, time_to, error_at, bias, worst_tile, units.shown)
-    environment.filters |= {filter.__name__: filter for filter in own}
-    environment.globals |= {"icons": ICONS, "samples_per_second": samples_per_second}
-    return environment
+    spoken = ("number", "percent", "seconds", "count", "moment", "triangles", "unbroken")
+    made.filters |= {name: getattr(wording, name) for name in spoken}
+    own = (theory.slope, time_to, error_at, bias, worst_tile, units.shown)
+    made.filters |= {filter.__name__: filter for filter in own}
+    made.globals |= {"icons": ICONS, "samples_per_second": samples_per_second}
+    return made
 
 
 def _finalize(value: Any) -> Any:

@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from lightproof.radiometry import QUANTITIES, Quantity
 from lightproof.references import Reference
-from lightproof.reporting import charts, wording
+from lightproof.reporting import wording
+from lightproof.reporting.choice import Choice, choices
 from lightproof.reporting.citations import Citation
 from lightproof.reporting.colours import LIGHT, SIGNED, ColourMap, film_image
 from lightproof.reporting.evaluation import Cell
@@ -116,10 +116,15 @@ class SceneView:
         drawn = [light.image(cell.film, self.scene), error.image(100 * cell.error, self.scene)]
         return drawn if cell.z_score is None else [*drawn, deviation.image(cell.z_score, self.scene)]
 
+    @property
+    def timed(self) -> bool:
+        """Whether it is known of any method what its error costs."""
+        return any(cell.drawable for cell in self.cells)
+
     @cached_property
-    def chart(self) -> dict[str, Any] | None:
-        """Error against time, as a Vega-Lite specification."""
-        return charts.error_against_time(self.cells, self.methods, self.scene.tolerance)
+    def choices(self) -> list[Choice]:
+        """What to use, for each error."""
+        return choices(self.cells)
 
 
 def round_up(value: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import unicodedata
 from datetime import datetime
 
@@ -90,3 +91,13 @@ def moment(iso: str) -> str:
     """A moment in ISO 8601 as a date and a time of day."""
     when = datetime.fromisoformat(iso)
     return f"{when.day} {when:%B %Y, %H:%M %Z}"
+
+
+def unbroken(text: str) -> str:
+    """`text` that breaks into lines nowhere between a number and its unit."""
+    return re.sub(r"(?<=\d) (?=%|[mµn]?s\b|×)", "\N{NO-BREAK SPACE}", text)
+
+
+def multiple(value: float) -> str:
+    """How many times: two digits, of large ones three; 0.83, 4.2, 87, 1,340."""
+    return f"{float(f'{value:.3g}'):,.0f}" if value >= 99.5 else number(value, 2)
