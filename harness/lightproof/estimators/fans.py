@@ -21,6 +21,7 @@ from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub
 from lightproof.geometry import Vec3
 
 TINY = 1e-280  # keeps a quotient from 0/0
+NEAREST = 1e-100  # of a metre: a receiver nearer to a corner is taken for this near
 COINCIDES = 2e-15  # of a distance: what lies no higher over a plane lies in it, but for rounding, and sees nothing of it
 
 
@@ -42,7 +43,7 @@ def add(a, b):
 @inlined
 def sector(a, b, c, sixfold):
     """The spherical triangle of corners a, b, c, as seen from the origin; `sixfold` is their tetrahedron's volume times six."""
-    la, lb, lc = norm(a), norm(b), norm(c)
+    la, lb, lc = max(norm(a), NEAREST), max(norm(b), NEAREST), max(norm(c), NEAREST)
     apex, start, end = scaled(1 / la, a), scaled(1 / lb, b), scaled(1 / lc, c)
     volume = sixfold / (la * lb * lc)
     middle = add(apex, start)

@@ -56,10 +56,3 @@ def no_bulbs(scene: Scene) -> str | None:
 def no_glowing_inside(scene: Scene) -> str | None:
     inner = [surface for surface in scene.surfaces if surface.side == "inside"]
     return f"it has no surfaces seen from inside ('{inner[0].id}' is one); path can" if inner else None
-
-
-def no_flat_lights(scene: Scene) -> str | None:
-    """Whether a light with an area is no sphere."""
-    shining = [item for item in (*scene.lights, *scene.surfaces) if hasattr(item, "shape") and item.radiance]
-    flat = [item for item in shining if not isinstance(item.shape, geometry.Sphere)]
-    return f"it projects spheres, and the light '{flat[0].id}' is none; mc-solid-angle can" if flat else None

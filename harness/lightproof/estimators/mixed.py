@@ -8,62 +8,41 @@ the point would count if area alone had found it, that is 2 F/(1 + F/(pi L)): ne
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators import shapes
+from lightproof.estimators.aims import INLINED, Aim, counted
 from lightproof.estimators.fans import COINCIDES
-from lightproof.estimators.lamps import Lamp, arriving, faced, parameters
+from lightproof.estimators.lamps import Lamp, arriving, parameters
 from lightproof.estimators.meeting import GRAZING, around, covers, meet
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import Flat, Sphere, placed
-from lightproof.estimators.subtended import over
-from lightproof.estimators.vectors import along, cross, dot, like, norm, scaled, sub
-
-INLINED = {"forceinline": True}
+from lightproof.estimators.shapes import Sphere
+from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub
 
 
-class Mixed(NamedTuple):
-    """A shape that emits `strength` [W/(m2 sr)] from its front; `level` [m] and all geometry are float64, as in `subtended`."""
+class Mixed(Aim):
+    """An aim at a light by its area and by the receiver's cosine."""
 
-    shape: Flat | Sphere
-    strength: float
-    level: float = 0.0
-
-    @property
-    def power(self) -> float:
-        """What its share of samples goes by [W/sr]."""
-        return self.strength * shapes.area(self.shape)
+    __slots__ = ()
 
 
-@overload(faced)
-def _faced(lamp, origin, frame, model):
-    return face if lamp.instance_class is Mixed else None
+@overload(counted, jit_options=INLINED)
+def _counted(lamp, x, s, t):
+    return counted_mixed if lamp.instance_class is Mixed else None
 
 
-def face(lamp, origin, frame, model):
-    return Mixed(placed(lamp.shape, origin, frame, 1.0), like(model, lamp.strength), over(lamp.shape, origin))
-
-
-@overload(arriving, jit_options=INLINED)
-def _arriving(lamp, x, s, t):
-    return arriving_mixed if lamp.instance_class is Mixed else None
-
-
-def arriving_mixed(lamp, x, s, t):
+def counted_mixed(lamp, x, s, t):
     """The half of the draws that s belongs to decides; within it s runs over the whole again."""
-    at = np.float64(x[0]), np.float64(x[1]), np.float64(x[2])
-    first = s < like(s, 0)
-    again, turns = 2 * np.float64(s) + (0.5 if first else -0.5) / TICK, np.float64(t)
+    first = s < 0
+    again = 2 * s + (0.5 if first else -0.5) / TICK
     down = again * TICK + 0.5
-    w = around(math.sqrt(max(1 - down, 0.0)), down, turns)
-    f_area, d_area = by_area(lamp.shape, lamp.level, at, again, turns)
-    f_cosine, d_cosine = by_cosine(lamp.shape, lamp.level, at, w)
+    w = around(math.sqrt(max(1 - down, 0.0)), down, t)
+    f_area, d_area = by_area(lamp.shape, lamp.level, x, again, t)
+    f_cosine, d_cosine = by_cosine(lamp.shape, lamp.level, x, w)
     f = f_area if first else f_cosine
-    d = d_area if first else d_cosine
-    return like(s, 2 * f / (1 + f / np.pi)), (like(s, d[0]), like(s, d[1]), like(s, d[2]))
+    return 2 * f / (1 + f / math.pi), d_area if first else d_cosine
 
 
 def by_area(shape, level, x, s, t):

@@ -8,16 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from lightproof.estimators import crowd, lamps, skies, world
+from lightproof.estimators.aims import Aim
 from lightproof.estimators.blockers import between
 from lightproof.estimators.estimator import TASKS, spread
 from lightproof.estimators.kernel import estimate
 from lightproof.estimators.lamps import Beam, Lamp, Point
 from lightproof.estimators.meeting import Cosine, Uniform
-from lightproof.estimators.mixed import Mixed
 from lightproof.estimators.points import BLOCK, Grid, Random
-from lightproof.estimators.projected import Projected
 from lightproof.estimators.shapes import Flat, Sphere
-from lightproof.estimators.subtended import Subtended
 from lightproof.estimators.views import View
 from lightproof.scene import Scene
 
@@ -25,7 +23,7 @@ WORTHWHILE = 2**15  # samples: a task takes longer than to hand it to a thread
 FEW = 3  # blockers that are worth a kernel of their own
 REACH = 1e4  # sizes of the scene: the length of a shadow ray along a beam or to the sky
 
-Source = Lamp | Point | Beam | Uniform | Cosine | Subtended | Mixed | Projected
+Source = Lamp | Point | Beam | Uniform | Cosine | Aim
 
 
 @dataclass(frozen=True)

@@ -1,70 +1,68 @@
-"""Spheres as directions uniform in projected solid angle find them: the protocol of `lamps`.
+"""Lights as directions uniform in their projected solid angle find them: every sample of what nothing hides counts the same.
 
-The rim of a sphere's cone is a circle in space; where none of it lies below the horizon, its projection onto the receiver's
-plane bounds all that the cone projects to, an ellipse of area pi sin(a)^2 cos(theta). A point uniform in the circle gives a
-point uniform in that ellipse, and this, lifted onto the hemisphere, the direction (Nusselt's analogue). Every sample then
-counts the same. A sphere that the horizon cuts is drawn from by solid angle.
+Polygons: see `azimuths`. Spheres: the rim of a sphere's cone is a circle in space; where none of it lies below the horizon, its
+projection onto the receiver's plane bounds all that the cone projects to, an ellipse of area pi sin(a)^2 cos(theta). A point
+uniform in the circle gives a point uniform in that ellipse, and this, lifted onto the hemisphere, the direction (Nusselt's
+analogue). Disks, a sphere that the horizon cuts, and a polygon so thin or so low over the horizon that its area is lost in
+the terms that it is a difference of, are drawn from by solid angle.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-import numpy as np
 from numba.extending import overload
 
-from lightproof.estimators import shapes
-from lightproof.estimators.compiled import inlined
-from lightproof.estimators.cones import entry, inside, over_sphere
-from lightproof.estimators.lamps import arriving, faced
+from lightproof.estimators.aims import INLINED, Aim, counted
+from lightproof.estimators.azimuths import corners, inside, sectors, summed
+from lightproof.estimators.compiled import inlined, strict
+from lightproof.estimators.cones import entry, over_sphere, towards
+from lightproof.estimators.fans import COINCIDES, add, reach
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import Sphere, placed
+from lightproof.estimators.shapes import Disk, Parallelogram, Sphere, Triangle
 from lightproof.estimators.trigonometry import turn
-from lightproof.estimators.vectors import along, like, norm, scaled, sub
+from lightproof.estimators.vectors import along, dot, norm, scaled, sub
+
+SURE = 1e-6  # of its terms: a smaller projected solid angle is not sure of ten digits
 
 
-class Projected(NamedTuple):
-    """A sphere that emits `strength` [W/(m2 sr)]; all geometry is float64, as in `subtended`."""
+class Projected(Aim):
+    """An aim at a light's projected solid angle."""
 
-    shape: Sphere
-    strength: float
-
-    @property
-    def power(self) -> float:
-        """What its share of samples goes by [W/sr]."""
-        return self.strength * shapes.area(self.shape)
+    __slots__ = ()
 
 
-@overload(faced)
-def _faced(lamp, origin, frame, model):
-    return face if lamp.instance_class is Projected else None
+@overload(counted, jit_options=INLINED)
+def _counted(lamp, x, s, t):
+    return counted_projected if lamp.instance_class is Projected else None
 
 
-def face(lamp, origin, frame, model):
-    return Projected(placed(lamp.shape, origin, frame, 1.0), like(model, lamp.strength))
+def counted_projected(lamp, x, s, t):
+    return irradiated(lamp.shape, lamp.level, x, s * TICK + 0.5, t * TICK + 0.5)
 
 
-@overload(arriving, jit_options={"forceinline": True})
-def _arriving(lamp, x, s, t):
-    return arriving_projected if lamp.instance_class is Projected else None
+def irradiated(shape, level, x, s, t):
+    """cos(theta)/density per solid angle of a direction into a shape, and the vector to the point there, from s, t in [0, 1]."""
 
 
-def arriving_projected(lamp, x, s, t):
-    to = sub(lamp.shape.center, (np.float64(x[0]), np.float64(x[1]), np.float64(x[2])))
-    f, w = irradiated(over_sphere(to, lamp.shape.radius), np.float64(s) * TICK + 0.5, np.float64(t) * TICK + 0.5)
-    d = scaled(entry(to, w, lamp.shape.radius), w)
-    return like(s, f if norm(to) > lamp.shape.radius else 0.0), (like(s, d[0]), like(s, d[1]), like(s, d[2]))
+@overload(irradiated, jit_options=INLINED)
+def _irradiated(shape, level, x, s, t):
+    return {Sphere: by_rim, Disk: by_solid_angle.py_func, Triangle: by_azimuth, Parallelogram: by_azimuth}[shape.instance_class]
 
 
-@inlined
-def irradiated(cone, s, t):
-    """cos(theta)/density per solid angle of a direction in a circular cone, and the direction, from s, t in [0, 1]."""
-    whole, raised = on_rim(cone, s, t)
-    per_density, free = inside(cone, s, t)
-    above = cone.axis[2] >= cone.sines[0]
-    w = raised if above else free
-    return whole if above else per_density * max(free[2], 0.0), w
+@strict
+def by_solid_angle(shape, level, x, s, t):
+    per_density, w, distance = towards(shape, level, x, s, t)
+    return per_density * max(w[2], 0.0), scaled(distance, w)
+
+
+def by_rim(shape, level, x, s, t):
+    to = sub(shape.center, x)
+    cone = over_sphere(to, shape.radius)
+    if not cone.axis[2] >= cone.sines[0]:
+        return by_solid_angle(shape, level, x, s, t)
+    f, w = on_rim(cone, s, t)
+    return f if norm(to) > shape.radius else 0.0, scaled(entry(to, w, shape.radius), w)
 
 
 @inlined
@@ -75,3 +73,40 @@ def on_rim(cone, s, t):
     p = along(along(scaled(cone.cosines[0], cone.axis), radius * cosine, cone.e1), radius * sine, cone.e2)
     height = math.sqrt(max(1 - p[0] * p[0] - p[1] * p[1], 0.0))
     return math.pi * cone.sines[0] * cone.sines[0] * cone.axis[2], (p[0], p[1], height)
+
+
+def by_azimuth(shape, level, x, s, t):
+    height = level + dot(x, shape.normal)
+    a, b, c, d, parts = divided(shape, x)
+    total, gross = summed(parts)
+    longest = max(norm(a), norm(b), norm(c), norm(d))
+    if not (total > SURE * gross and height > COINCIDES * longest):
+        return by_solid_angle(shape, level, x, s, t)
+    w = inside(parts, s * total, t)
+    return total, scaled(reach(w, shape.normal, height, longest), w)
+
+
+def divided(shape, x):
+    """Corners of a polygon as seen from x, and its sectors."""
+
+
+@overload(divided)
+def _divided(shape, x):
+    return {Triangle: divided_triangle, Parallelogram: divided_parallelogram}[shape.instance_class]
+
+
+def divided_parallelogram(shape, x):
+    a = along(along(sub(shape.center, x), -0.5, shape.u), -0.5, shape.v)
+    b, d = add(a, shape.v), add(a, shape.u)
+    c = add(b, shape.u)
+    back_v, back_u = scaled(-1.0, shape.v), scaled(-1.0, shape.u)
+    return a, b, c, d, sectors(corners(a, b, c, d, shape.v, shape.u, back_v, back_u))
+
+
+def divided_triangle(shape, x):
+    """With the middle of one edge for a fourth corner."""
+    a = sub(shape.center, x)
+    b, d = add(a, shape.v), add(a, shape.u)
+    half = scaled(0.5, sub(shape.u, shape.v))
+    c = add(b, half)
+    return a, b, c, d, sectors(corners(a, b, c, d, shape.v, half, half, scaled(-1.0, shape.u)))
