@@ -84,7 +84,7 @@ def test_a_run_in_a_sentence(made):
     chosen.append(choice.choose([made("path", (0.001, 0.02), (0.1, 0.01)), made("mitsuba", (0.2, 0.01))], 0.01))
     assert choice.overall(chosen) == (
         "To 1 %: fastest of all are mc-area on 2, path on 1 of 3 scenes. Ours that sample are 10 to 40 times as fast as the"
-        " fastest external renderer, on the 2 where that is known at least from below.")
+        " fastest external renderer, on the 2 scenes where that is known or bounded from below.")
 
 
 def test_the_front_is_what_no_film_beats():

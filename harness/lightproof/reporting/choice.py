@@ -14,6 +14,7 @@ from lightproof.reporting.wording import multiple, percent, seconds
 
 ERRORS = (0.01, 0.001, 0.0001)  # rms errors of one film
 FROM_BELOW = ("", "at least ", "more than ")  # what stands before a ratio of which it is known how small it can be
+NAMED = 4  # methods that a sentence has room for
 INVERSE = {"at least ": "at most ", "at most ": "at least "}
 SIGNS = {"": "", "at least ": "≥ ", "more than ": "> ", "at most ": "≤ ", "about ": "≈ "}
 
@@ -135,7 +136,8 @@ def overall(chosen: Sequence[Choice]) -> str:
     if not reached:
         return f"To {percent(chosen[0].error, 1)}: nothing came so far on any scene."
     counts = Counter(choice.fastest.method for choice in reached).most_common()
-    fastest = ", ".join(f"{method} on {count}" for method, count in counts)
+    others = [("others", sum(count for _, count in counts[NAMED:]))] if len(counts) > NAMED else []
+    fastest = ", ".join(f"{method} on {count}" for method, count in counts[:NAMED] + others)
     return " ".join(filter(None, [f"To {percent(chosen[0].error, 1)}: fastest of all are {fastest} of {len(chosen)} scenes.",
                                   _compared(chosen)]))
 
@@ -146,5 +148,6 @@ def _compared(chosen: Sequence[Choice]) -> str:
         return ""
     spread = f"{multiple(min(ratios))} to {multiple(max(ratios))}" if len(ratios) > 1 else multiple(ratios[0])
     middle = f", {multiple(median(ratios))} in the median" if len(ratios) > 2 else ""
-    known = f"on the {len(ratios)} where that is known at least from below"
+    scenes = "one scene" if len(ratios) == 1 else f"{len(ratios)} scenes"
+    known = f"on the {scenes} where that is known or bounded from below"
     return f"Ours that sample are {spread} times as fast as the fastest external renderer{middle}, {known}."

@@ -67,5 +67,10 @@ def in_words(front: Sequence[Place]) -> str:
 
 def _member(stretch: Sequence[Place]) -> str:
     first, last = stretch[0], stretch[-1]
-    start = f"{first.method}, {percent(first.error)} in {seconds(first.seconds)}"
-    return start if first is last else f"{start} to {percent(last.error)} in {seconds(last.seconds)}"
+    start = f"{first.method}, {_film(first)}"
+    return start if first is last else f"{start} to {_film(last)}"
+
+
+def _film(place: Place) -> str:
+    error = percent(place.error) if place.error > FLOOR else f"under {percent(FLOOR, 1)}"
+    return f"{error} in {seconds(place.seconds)}"

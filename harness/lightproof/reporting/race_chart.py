@@ -31,7 +31,7 @@ def error_against_time(cells: Sequence[Cell], methods: Sequence[str], tolerance:
     data = pd.DataFrame([row for cell in drawn for row in _rows(cell, cell.method in strong)])
     look = [(cell.method, methods.index(cell.method)) for cell in drawn]
     legend = LEGEND.copy()
-    legend["values"] = [cell.method for cell in drawn if cell.method in strong]
+    legend["values"] = [cell.method for cell in drawn if cell.method in strong or len(drawn) <= FEW]
     chosen = alt.selection_point(fields=["method"], bind="legend")
     x = alt.X("seconds:Q", title="render time of one film", scale=log_scale(data.seconds), axis=decades(data.seconds, SECONDS))
     y = alt.Y("error:Q", title="rms error of one film [%]", scale=log_scale(data.error), axis=decades(data.error))
@@ -49,14 +49,12 @@ def error_against_time(cells: Sequence[Cell], methods: Sequence[str], tolerance:
 def _rows(cell: Cell, strong: bool) -> Iterable[dict[str, Any]]:
     for step in cell.drawable:
         yield {"method": cell.method, "samples": step.samples, "seconds": float(f"{step.seconds_render:.4g}"),
-               "error": float(f"{100 * max(step.rmse, FLOOR):.4g}"), "strength": 1 if strong else 0.3,
+               "error": float(f"{100 * max(step.rmse, FLOOR):.4g}"), "strength": 1 if strong else 0.35,
                "time": seconds(step.seconds_render), "rms error": percent(step.rmse), "slope": slope(cell)}
 
 
 def _strong(cells: Sequence[Cell], found: Iterable[Sequence[Place]]) -> set[str]:
     """The methods to be told apart at a glance."""
-    if len(cells) <= FEW:
-        return {cell.method for cell in cells}
     chosen = [best(cell for cell in cells if cell.method in family.methods) for family in families(cell.method for cell in cells)]
     return {cell.method for cell in chosen if cell} | {place.method for front in found for place in front}
 
@@ -67,7 +65,8 @@ def _steps(found: dict[str, Sequence[Place]], data: pd.DataFrame, x: alt.X, y: a
     corners = [{"front": name, "order": order, "seconds": time, "error": error} for name, front in found.items()
                for order, (time, error) in enumerate(_corners(front, top, end))]
     dashes = alt.Scale(domain=list(found), range=list(DASHES[:len(found)]))
-    legend = alt.Legend(title="front of", orient="bottom", symbolStrokeColor="currentColor", symbolStrokeWidth=2)
+    legend = alt.Legend(title="front of", orient="bottom", symbolStrokeColor="currentColor",
+                        symbolStrokeWidth=2, symbolSize=900)
     return alt.Chart(pd.DataFrame(corners, columns=["front", "order", "seconds", "error"])).mark_line(
         interpolate="step-after", color="currentColor", strokeWidth=2.5, opacity=0.55,
     ).encode(x=x, y=y, order="order:Q", strokeDash=alt.StrokeDash("front:N", scale=dashes, legend=legend))

@@ -14,7 +14,7 @@ UP = (0.0, 0.0, 1.0)
 
 def coordinates(scene: Scene, domain: str) -> int:
     """Over how many coordinates an estimate is an integral: two of the light, two of an element with an extent."""
-    constant = domain == PROJECTED and not edges(scene, domain)
+    constant = domain == PROJECTED and not (edges(scene, domain) or any(isinstance(shape, Disk) for shape in _areas(scene)))
     light = not constant and (scene.reflects or bool(_with_extent(scene)))
     return 2 * light + 2 * (not isinstance(scene.film, PointsFilm))
 
