@@ -11,14 +11,14 @@ from lightproof.suite import Suite
 
 
 def write(run_folder: Path, suite: Suite) -> Path:
-    """Judge a run anew and write results.csv, summary.csv, index.html and, where times are known, speed.html into its folder;
-    returns the path of index.html.
+    """Judge a run anew and write results.csv, summary.csv, index.html and, where times are known, speed.html and, where cases are
+    hard, hard.html into its folder; returns the path of index.html.
 
     Raises StoreError, FilmError and UnitsError where the folder is no run, or a record is broken, OSError where it cannot be
     written.
     """
     # Here and not above: pandas and altair take a second to import, which the process that renders a picture need not wait for.
-    from lightproof.reporting import citations, page, speed_page, tables, units
+    from lightproof.reporting import citations, hard_page, page, speed_page, tables, units
     from lightproof.reporting.evaluation import evaluate
     from lightproof.reporting.pictures import picture
 
@@ -31,6 +31,9 @@ def write(run_folder: Path, suite: Suite) -> Path:
     if speed:
         html = speed_page.render(speed, evaluation, page.environment(), page.bundle())
         (run_folder / "speed.html").write_text(html, encoding="utf-8")
+    hard = hard_page.render(evaluation, page.environment(), page.bundle())
+    if hard:
+        (run_folder / "hard.html").write_text(hard, encoding="utf-8")
     draw = functools.partial(picture, cache_folder=_picture_cache())
     html = page.render(evaluation, bibliography, draw, factors, speed_page.sentences(speed))
     path = run_folder / "index.html"

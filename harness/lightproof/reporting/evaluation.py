@@ -139,6 +139,11 @@ class Evaluation:
         """Each method once."""
         return sorted({cell.method for cell in self.cells}, key=_rank)
 
+    @property
+    def tags(self) -> set[str]:
+        """Of any scene."""
+        return {tag for scene in self.scenes for tag in scene.tags}
+
     def cell(self, scene: Scene, method: str) -> Cell | None:
         """The cell of a scene and a method, None where the run has no result."""
         return self._by_name.get((scene.name, method))

@@ -1,0 +1,281 @@
+"""Hard cases: how far every method is from the proven light at each point, noise set apart from what is systematic."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from lightproof import statistics
+from lightproof.reporting import sweeps
+from lightproof.reporting.evaluation import Cell, Evaluation
+from lightproof.reporting.wording import number, percent
+from lightproof.scene import Scene
+from lightproof.trial import Status
+from lightproof.verdict import Outcome
+
+TAG = "hard"
+ROUNDING = 1e-5  # a smaller systematic error may be that of float32
+LEVEL = 1e-4  # chance that noise alone makes any point of a cell look systematically off
+PRECISIONS = {"float64": np.float64, "float32": np.float32, "float16": np.float16}
+NO_LIGHT = re.compile(r"are no light, the first (\S+) in element (\d+)")
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """One method on one hard case, by points (n,): all but `ulps` are fractions of the exact light, or of the tolerance scale
+    where that is zero. `noise` is what chance may have done: the half-width of an interval from the scatter between films,
+    and the most that a sample which no film met could add."""
+
+    cell: Cell
+
+    @cached_property
+    def unit(self) -> np.ndarray:
+        """What errors are fractions of, in the film's unit."""
+        exact = np.abs(self.cell.reference.value)
+        return np.where(exact > 0, exact, self.cell.scale)
+
+    @cached_property
+    def error(self) -> np.ndarray:
+        """Of the mean over replicates."""
+        return (self.cell.film - self.cell.reference.value) / self.unit
+
+    @property
+    def certain(self) -> bool:
+        """Whether the method has no noise, or shows none for want of films."""
+        return self.cell.final[0].deterministic or len(self.cell.final) == 1
+
+    @cached_property
+    def standard_error(self) -> np.ndarray:
+        return np.zeros_like(self.error) if self.cell.standard_error is None else self.cell.standard_error / self.unit
+
+    @cached_property
+    def unlit(self) -> np.ndarray:
+        """Where light is due and a method that does not aim at lights has met none."""
+        aims = self.certain or self.cell.final[0].samples_lights
+        return (self.cell.film == 0) & (self.cell.reference.value > 0) & (not aims)
+
+    @cached_property
+    def leap(self) -> np.ndarray:
+        """What a single sample that no film met could add to the mean at most: without bound where unlit, 0 where the method
+        does not know."""
+        if self.certain:
+            return np.zeros_like(self.error)
+        peaks = [result.peak for result in self.cell.final if result.peak is not None]
+        known = np.max(peaks, axis=0) / sum(result.samples for result in self.cell.final) if peaks else np.zeros_like(self.unit)
+        return np.where(self.unlit, np.inf, known / self.unit)
+
+    @cached_property
+    def noise(self) -> np.ndarray:
+        if self.certain:
+            return np.zeros_like(self.error)
+        quantile = statistics.simultaneous_quantile(LEVEL, len(self.error), len(self.cell.final))
+        return quantile * self.standard_error + self.leap
+
+    @cached_property
+    def systematic(self) -> np.ndarray:
+        """What of the error noise does not explain."""
+        return np.maximum(np.abs(self.error) - self.noise, 0)
+
+    @property
+    def worst(self) -> int:
+        """The point with the largest systematic error, or else with the most noise."""
+        return int(np.argmax(self.systematic if self.off else self.noise))
+
+    @cached_property
+    def off(self) -> bool:
+        """Whether there is a systematic error to speak of anywhere: of rounding only where noise is less."""
+        largest = self.systematic.max()
+        return self.certain or bool(largest > ROUNDING or largest > self.noise.max())
+
+    @property
+    def unbounded(self) -> bool:
+        """Whether what most blurs the worst point is a single sample that no film met."""
+        return not self.off and self.leap[self.worst] > self.noise[self.worst] / 2
+
+    @property
+    def level(self) -> float:
+        """The cell's one number: the error where it is systematic, what noise leaves open where it is not."""
+        return float(np.abs(self.error[self.worst]) if self.off else self.noise[self.worst])
+
+    @cached_property
+    def ulps(self) -> np.ndarray | None:
+        """Error (n,) in units in the last place of the exact value in the method's precision, NaN where that is zero; None where
+        its precision is not a floating-point format."""
+        precision = PRECISIONS.get(self.cell.final[0].precision)
+        if precision is None:
+            return None
+        exact = self.cell.reference.value
+        with np.errstate(all="ignore"):
+            spacing = np.spacing(np.abs(exact).astype(precision)).astype(float)
+            return np.where(exact != 0, np.abs(self.cell.film - exact) / spacing, np.nan)
+
+    @property
+    def place(self) -> str:
+        """The worst point in words."""
+        return place(self.cell.scene, self.worst)
+
+    @property
+    def told(self) -> str:
+        """All of it in a sentence or two."""
+        at, last = self.worst, self.cell.final[0]
+        error, deviation = signed(self.error[at]), number(self.standard_error[at], 2)
+        if self.certain:
+            return f"worst {self.place}: off by {error}{self._in_ulps(at)}; no noise"
+        films = f"standard error of {len(self.cell.final)} films of {last.samples:,} samples"
+        if self.unbounded:
+            return (f"no systematic error can be told: at worst, {self.place}, a single sample could move the mean by"
+                    f" {number(self.leap[at], 2)}; it is off by {error} ± {deviation} ({films})")
+        if not self.off:
+            return f"no systematic error seen: at worst, {self.place}, the mean is off by {error} ± {deviation} ({films})"
+        return (f"worst {self.place}: the mean is off by {error} ± {deviation} ({films}),"
+                f" of which noise does not explain {number(self.systematic[at], 2)}{self._in_ulps(at)}")
+
+    def _in_ulps(self, at: int) -> str:
+        known = self.ulps is not None and np.isfinite(self.ulps[at])
+        return f", {number(self.ulps[at], 2)} units in the last place of {self.cell.final[0].precision}" if known else ""
+
+
+@dataclass(frozen=True)
+class Square:
+    """One square of the heat map: a `deviation`, or why there is none."""
+
+    method: str
+    cell: Cell | None
+
+    @cached_property
+    def deviation(self) -> Deviation | None:
+        judged = self.cell is not None and self.cell.reference is not None and self.cell.final
+        return Deviation(self.cell) if judged and self.cell.verdict.outcome is not Outcome.ERROR else None
+
+    @cached_property
+    def no_light(self) -> tuple[str, str] | None:
+        """What of a film was no number or negative, and where; None where nothing was."""
+        errors = [result for result in self.cell.results if result.status is Status.ERROR] if self.cell else []
+        found = [(match, result) for result in errors if (match := NO_LIGHT.search(result.message))]
+        return (_kind(found[0][0][1]), place(self.cell.scene, int(found[0][0][2]))) if found else None
+
+    @property
+    def text(self) -> str:
+        """What is written in the square."""
+        if self.deviation:
+            mark = "" if self.deviation.off else "±"
+            return "exact" if self.deviation.level == 0 else f"{mark}{short(self.deviation.level)}"
+        if self.cell is None:
+            return "·"
+        return self.no_light[0] if self.no_light else "–" if self.cell.verdict.outcome is Outcome.UNSUPPORTED else "!"
+
+    @property
+    def ulps(self) -> str:
+        """The worst error in units in the last place; empty where noise hides it."""
+        known = self.deviation and self.deviation.off and self.deviation.ulps is not None
+        worst = self.deviation.ulps[self.deviation.worst] if known else np.nan
+        return f"{short(worst)} ulp" if np.isfinite(worst) and worst > 0.05 else ""
+
+    @property
+    def told(self) -> str:
+        """The tooltip."""
+        if self.deviation:
+            return f"{self.method}, {self.deviation.told}"
+        if self.cell is None:
+            return "no result in this run"
+        where = f" (the first {self.no_light[1]})" if self.no_light else ""
+        return f"{self.method}: {self.cell.verdict.reason}{where}"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One hard case, with a square for each method."""
+
+    scene: Scene
+    squares: tuple[Square, ...]
+
+    @cached_property
+    def parameter(self) -> np.ndarray | None:
+        """The sweep's parameter (n,); None where there is none."""
+        return sweeps.values(self.scene)
+
+
+@dataclass(frozen=True)
+class Group:
+    """The rows that make one sweep, and what one chart shows."""
+
+    scene_id: str
+    name: str
+    rows: tuple[Row, ...]
+
+    @property
+    def anchor(self) -> str:
+        return f"hard--{self.scene_id}--{self.name}"
+
+    @property
+    def title(self) -> str:
+        """The rows' names in short."""
+        names = [row.scene.name for row in self.rows]
+        return names[0] if len(names) == 1 else f"{names[0]} … {names[-1].rpartition(':')[2]}"
+
+    @property
+    def sweep(self) -> sweeps.Sweep | None:
+        return sweeps.of(self.rows[0].scene)
+
+    @cached_property
+    def swept(self) -> bool:
+        """Whether the parameter takes several values, so that there is something to draw."""
+        known = [row.parameter for row in self.rows if row.parameter is not None]
+        return len(np.unique(np.concatenate(known))) > 2 if known else False
+
+
+def rows(evaluation: Evaluation) -> list[Row]:
+    """Every hard case of a run."""
+    hard = [scene for scene in evaluation.scenes if TAG in scene.tags]
+    return [Row(scene, tuple(Square(method, evaluation.cell(scene, method)) for method in evaluation.methods)) for scene in hard]
+
+
+def groups(found: Sequence[Row]) -> list[Group]:
+    """Sweep by sweep, in the run's order."""
+    together: dict[tuple[str, str], list[Row]] = {}
+    for row in found:
+        sweep = sweeps.of(row.scene)
+        name = sweep.group(row.scene.case) if sweep else row.scene.case
+        together.setdefault((row.scene.id, name), []).append(row)
+    return [Group(scene_id, name, tuple(members)) for (scene_id, name), members in together.items()]
+
+
+def place(scene: Scene, element: int) -> str:
+    """An element by the sweep's parameter, or by its number."""
+    values, sweep = sweeps.values(scene), sweeps.of(scene)
+    if values is None:
+        return f"at point {element}"
+    return f"at {sweep.parameter} {amount(values[element], sweep.unit)} (point {element})"
+
+
+def amount(value: float, unit: str) -> str:
+    """A parameter's value."""
+    text = number(float(value), 2).removeprefix("1 × ") if not 1e-3 <= value < 1e4 else f"{value:.4g}"
+    return f"{text}{' ' if unit and unit != '°' else ''}{unit}"
+
+
+def short(value: float) -> str:
+    """A magnitude in as few letters as tell it: 2e-16, 0.3, 40."""
+    if not np.isfinite(value):
+        return "∞"
+    if 0.095 <= value < 9.5:
+        return f"{value:.1f}".removesuffix(".0")
+    if 9.5 <= value < 999.5:
+        return f"{value:.0f}"
+    mantissa, _, power = f"{value:.0e}".partition("e")
+    return f"{mantissa}e{int(power)}".replace("-", "\N{MINUS SIGN}")
+
+
+def signed(value: float) -> str:
+    """An error: in per cent where that is short."""
+    sign = "+" if value > 0 else ""
+    return f"{sign}{percent(value)}" if 1e-4 <= abs(value) < 100 else f"{sign}{number(float(value), 2)}"
+
+
+def _kind(found: str) -> str:
+    return "NaN" if "nan" in found else "∞" if "inf" in found else "< 0"
+

@@ -1,0 +1,277 @@
+"""Hard cases: rare samples accuse nobody, the textbook is as wrong as it is, and the page says where methods break."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cells import LIGHT, SCENE, noisy, reference, results
+
+from lightproof import films, statistics, store, suite, verdict
+from lightproof.cli import main
+from lightproof.estimators.mc_area import McArea
+from lightproof.estimators.textbook import Textbook
+from lightproof.judging import Judge
+from lightproof.reporting import hard, hard_charts, hard_findings, hard_page, page, sweeps
+from lightproof.reporting.evaluation import Cell, Evaluation
+from lightproof.scene import Scene
+from lightproof.store import Run
+from lightproof.trial import Result, Status, Trial
+from lightproof.verdict import Outcome, Verdict
+
+CATALOGUE = suite.default()
+ELEMENTS = SCENE.size
+DISTANCE = CATALOGUE.scene("hard-distance")
+EXACT = CATALOGUE.reference(DISTANCE)
+
+
+# The verdict
+
+def judged(films: dict[int, np.ndarray], peak: float | None) -> Verdict:
+    """Of 16 films a step whose largest possible sample is `peak` [W/m2] in every element; 4 W/m2 is the scale, 0.02 tolerated."""
+    peaks = None if peak is None else np.full(ELEMENTS, peak)
+    return verdict.judge(results(films, peak=peaks), reference(), SCENE)
+
+
+def dark(share: float = 1.0) -> dict[int, np.ndarray]:
+    """Two steps of films that lack a share of the light everywhere, with next to no noise."""
+    return {samples: noisy((1 - share) * LIGHT, 1e-6, seed=samples) for samples in (64, 256)}
+
+
+def test_a_missing_light_that_one_sample_could_bring_is_no_failure():
+    """Black films: a fail, unless one sample of 64 x 16 could carry a million W/m2; then no scatter tells."""
+    assert judged(dark(), None).outcome is Outcome.FAIL
+    found = judged(dark(), 1e6)
+    assert found.outcome is Outcome.UNDECIDED
+    assert "a single sample could move it by up to" in found.reason
+    assert "mc-solid-angle" in found.reason
+
+
+def test_samples_that_cannot_hide_the_light_still_accuse():
+    """A sample of 10 W/m2 among 1,024 moves an element by 0.01, half of what is tolerated."""
+    assert judged(dark(), 10.0).outcome is Outcome.FAIL
+
+
+def test_a_tile_is_moved_by_its_elements_share_only():
+    """A sample of 50 W/m2 moves an element by 0.05 and its tile of four by 0.0125: the tiles may accuse, the elements may not."""
+    assert judged(dark(), 50.0).outcome is Outcome.FAIL
+    spot = np.arange(ELEMENTS) == 100
+    one = {samples: noisy(LIGHT - 0.06 * spot, 1e-6, seed=samples) for samples in (64, 256)}
+    assert judged(one, 1.0).outcome is Outcome.FAIL
+    assert judged(one, 500.0).outcome is Outcome.UNDECIDED
+
+
+def test_the_samples_that_would_tell_are_named():
+    """Peak over samples has to fall to the tolerance: of the whole film, 1e6 W/m2 / (16 x 0.02) a film."""
+    assert judged(dark(), 1e6).samples_needed == pytest.approx(1e6 / (16 * 0.02), rel=1e-3)
+    assert judged(dark(), np.inf).samples_needed is None
+    assert "without bound" in judged(dark(), np.inf).reason
+
+
+def test_a_peak_takes_no_pass_away_and_gives_none():
+    """The exact light passes whatever a sample can be. One element off that its tile dilutes forbids the pass all the same."""
+    assert judged({64: noisy(LIGHT, 0.01)}, np.inf).outcome is Outcome.PASS
+    spot = LIGHT + 0.064 * (np.arange(ELEMENTS) == 100)
+    assert judged({64: noisy(spot, 0.001), 256: noisy(spot, 0.001, seed=2)}, np.inf).outcome is Outcome.UNDECIDED
+
+
+def test_the_share_of_a_tile():
+    """Of 2 x 4 elements in two tiles of 2 x 2 the largest, over four."""
+    assert statistics.tile_shares(np.array([1.0, 2, 3, 4, 8, 7, 6, 5]), (2, 4), 2).tolist() == [2, 1.5]
+
+
+# The largest sample
+
+@pytest.mark.parametrize("name", ["hard-distance", "hard-distance:sphere", "hard-touching-edge", "square-light"])
+def test_no_sample_is_larger_than_the_bound(name):
+    """The largest of 100 samples at each element is below the bound, and somewhere not far below."""
+    scene = CATALOGUE.scene(name)
+    method = McArea("mc-area", 1)
+    method.prepare(scene)
+    drawn = [method.render(1, seed + 1) for seed in range(100)]
+    largest, bound = np.max([one.film for one in drawn], axis=0), drawn[0].peak
+    assert (largest <= 1.0001 * bound).all()
+    assert (largest > 0.5 * bound).any()
+
+
+def test_a_run_near_the_lamp_is_undecided_and_says_why(tmp_path):
+    """From worker to verdict: mc-area a micrometre from the lamp."""
+    assert main(["run", "hard-distance", "--with", "mc-area", "--budget", "2", "--replicates", "8", "--out", str(tmp_path)]) == 0
+    record = store.latest(tmp_path)
+    kept = record.results()
+    assert all(result.peak[0] > 1e10 for result in kept)
+    found = Judge(record).judge(kept)
+    assert found.outcome is Outcome.UNDECIDED
+    assert "a single sample could move it" in found.reason
+
+
+def test_a_film_keeps_every_bit(tmp_path):
+    """float64 of all magnitudes, and a peak without bound."""
+    values = np.geomspace(1e-18, 1e18, 12) * np.random.default_rng(1).random(12)
+    films.write(tmp_path / "a.exr", (3, 4), {"Y": values, "peak": np.full(12, 1e300)}, {})
+    channels = films.read(tmp_path / "a.exr")[1]
+    assert (channels["Y"] == values).all()
+    assert np.isinf(channels["peak"]).all()
+
+
+# The textbook
+
+def textbook(name: str, scene: Scene) -> np.ndarray:
+    method = Textbook(name, 1)
+    assert method.unsupported(scene) is None
+    method.prepare(scene)
+    return method.render(1, 1).film
+
+
+def test_the_textbook_is_right_on_paper():
+    """A square, a sphere and a level disk from 1 m: float64 to its rounding, float32 to its own."""
+    for case in ("base", "sphere", "disk"):
+        scene = CATALOGUE.cases("hard-distance")[case]
+        exact = CATALOGUE.reference(scene).value[6]
+        for name, rounding in (("textbook", 1e-14), ("textbook/float32", 1e-5)):
+            assert textbook(name, scene)[6] == pytest.approx(exact, rel=rounding), (case, name)
+        assert textbook("textbook/float32", scene)[6] != textbook("textbook", scene)[6]
+
+
+@pytest.mark.parametrize(("name", "method", "least"), [
+    ("hard-distance", "textbook", 1.0),  # arccos, far away
+    ("hard-grazing:sliver", "textbook", 0.9),  # no horizon
+    ("hard-tiny-solid-angle:sphere-angle", "textbook", 1e-4),  # 1 - cos
+    ("hard-tiny-solid-angle:triangle-angle", "textbook", 0.1),  # spherical excess
+    ("hard-translation:moved-1e4", "textbook/float32", 1e-3),  # planes in world coordinates
+    ("hard-reflectance:one-in-1e6", "textbook/float32", 1e-3),  # 1 - rho
+])
+def test_the_textbook_breaks_where_it_should(name, method, least):
+    """Else it were no foil: and at none of these does `analytic` lose more than 1e-12 (see test_analytic)."""
+    scene = CATALOGUE.scene(name)
+    exact = CATALOGUE.reference(scene).value
+    assert (np.abs(textbook(method, scene) - exact) / exact).max() > least
+
+
+@pytest.mark.parametrize(("name", "reason"), [
+    ("square-light", "for points"),
+    ("hard-reflectance:bulb", "glows and reflects evenly"),
+    ("hard-tiny-solid-angle:disk-angle", "axis"),
+])
+def test_what_no_textbook_prints(name, reason):
+    assert reason in Textbook("textbook", 1).unsupported(CATALOGUE.scene(name))
+
+
+# The page
+
+def given(method: str, films: np.ndarray, scene: Scene = DISTANCE, **fields: object) -> Cell:
+    """A cell of films (R, n) of a hard case."""
+    kept = [Result(Trial(scene.id, scene.case, scene.digest, method, 64, k), Status.OK, film=film, samples=64,
+                   precision="float32", seconds={"render": 1.0}, **fields) for k, film in enumerate(films)]
+    exact = CATALOGUE.reference(scene)
+    return Cell(scene, method, tuple(kept), exact, verdict.judge(kept, exact, scene))
+
+
+def failed(method: str, message: str) -> Cell:
+    trial = Trial(DISTANCE.id, DISTANCE.case, DISTANCE.digest, method, 64, 0)
+    kept = (Result(trial, Status.ERROR, message=message),)
+    return Cell(DISTANCE, method, kept, EXACT, verdict.judge(kept, EXACT, DISTANCE))
+
+
+@pytest.fixture(scope="module")
+def cells() -> tuple[Cell, ...]:
+    """An exact method; one that loses a tenth from 10^4 m on; one with noise; one blind below 1e-4 m; one that gives NaN."""
+    value, random = EXACT.value, np.random.default_rng(3)
+    noise = value * random.normal(0, 1e-3, (16, len(value)))
+    far = sweeps.values(DISTANCE) >= 1e4
+    near = sweeps.values(DISTANCE) <= 1e-4
+    peak = np.where(near, 1e12, 1.0) * value
+    return (
+        given("exact", value[None], deterministic=True),
+        given("far", value + noise - 0.1 * value * far),
+        given("noisy", value + noise),
+        given("blind", value + noise - 0.99 * value * near, peak=peak),
+        failed("broken", "a.exr: 1 of 15 values of Y are no light, the first nan in element 3; every value must be finite"),
+    )
+
+
+@pytest.fixture(scope="module")
+def evaluation(cells) -> Evaluation:
+    run = Run("run-1", "2026-01-02T03:04:05+00:00", "digest", "a machine", 2, 7, {}, "abc", {})
+    return Evaluation(run, (DISTANCE,), cells)
+
+
+@pytest.fixture(scope="module")
+def squares(evaluation) -> dict[str, hard.Square]:
+    (row,) = hard.rows(evaluation)
+    return {square.method: square for square in row.squares}
+
+
+def test_noise_is_set_apart_from_what_is_systematic(squares):
+    """A tenth is seen through noise of a thousandth; noise alone shows nothing; rare samples hide what is missing."""
+    assert squares["exact"].text == "exact"
+    assert squares["far"].deviation.level == pytest.approx(0.1, rel=0.02)
+    assert (squares["far"].deviation.systematic > 0.09).sum() == (sweeps.values(DISTANCE) >= 1e4).sum()
+    assert squares["noisy"].text.startswith("±") and not squares["noisy"].deviation.off
+    assert squares["blind"].deviation.unbounded
+    assert "a single sample could move the mean" in squares["blind"].told
+
+
+def test_a_square_says_where_it_is_worst(squares):
+    assert "distance to the lamp" in squares["far"].told and "standard error of 16 films of 64 samples" in squares["far"].told
+    assert squares["broken"].text == "NaN"
+    assert "(the first at distance to the lamp 0.001 m (point 3))" in squares["broken"].told
+
+
+def test_units_in_the_last_place(squares):
+    """0.1 of a value is between 2^20 and 2^21 times a tenth of them in float32, whose digits are 24."""
+    far = squares["far"].deviation
+    assert 2**23 * 0.09 < far.ulps[far.worst] < 2**24 * 0.11
+
+
+def test_sentences_say_where_each_method_breaks(evaluation):
+    (group,) = hard.groups(hard.rows(evaluation))
+    said = hard_findings.findings(group)
+    assert said["off by more than 1 % at a distance to the lamp of 10⁴ m and more"] == ["far"]
+    assert said["no systematic error of more than 1 %"] == ["exact", "noisy"]
+    blind, = (sentence for sentence, methods in said.items() if methods == ["blind"])
+    assert blind.startswith("blind to errors of more than 1 % at a distance to the lamp of 0.0001 m and less")
+    assert said["no light but NaN, first at distance to the lamp 0.001 m (point 3)"] == ["broken"]
+
+
+def test_the_page_shows_all_of_it(evaluation):
+    """Every method's square with its tooltip, the sweep's chart, and nothing where no case is hard."""
+    html = hard_page.render(evaluation, page.environment(), "")
+    assert html.count("<td class=") == 5
+    assert 'class="broken"' in html and "NaN" in html
+    assert "distance to the lamp [m]" in html
+    easy = replace(DISTANCE, tags=("direct",))
+    assert hard_page.render(replace(evaluation, scenes=(easy,)), page.environment(), "") == ""
+
+
+def test_the_chart_has_the_worst_of_the_points_that_share_a_value():
+    """hard-approach has three points at each of five distances."""
+    scene = CATALOGUE.scene("hard-approach")
+    value = CATALOGUE.reference(scene).value
+    film = value * (1 + np.arange(len(value)) / 100)
+    run = Run("run-1", "2026-01-02T03:04:05+00:00", "digest", "a machine", 2, 7, {}, "abc", {})
+    (group,) = hard.groups(hard.rows(Evaluation(run, (scene,), (given("mine", film[None], scene, deterministic=True),))))
+    (points,) = hard_charts.error_along(group, ["mine"])["datasets"].values()
+    assert sorted(point["error"] for point in points) == pytest.approx([0.1, 0.11, 0.12, 0.13, 0.14])
+
+
+@pytest.mark.parametrize("name", [scene.name for scene in CATALOGUE.scenes() if "hard" in scene.tags])
+def test_every_sweep_has_its_parameter(name):
+    """One positive number a point, of at least three in a sweep's chart."""
+    scene = CATALOGUE.scene(name)
+    values = sweeps.values(scene)
+    assert scene.id in sweeps.TEXTBOOK
+    if values is not None:
+        assert values.shape == (scene.size,) and (values > 0).all()
+
+
+@pytest.mark.parametrize(("marked", "said"), [
+    ([1, 1, 1, 1], "everywhere"),
+    ([1, 1, 0, 0], "at a distance of 0.01 m and less"),
+    ([0, 0, 0, 1], "at a distance of 1 m and more"),
+    ([1, 0, 1, 0], "at a distance of 0.001 m and less, 0.1 m"),
+])
+def test_ranges_in_words(marked, said):
+    sweep = sweeps.Sweep("distance", "m", lambda scene: np.zeros(4))
+    assert hard_findings.ranges(np.array([0.001, 0.01, 0.1, 1]), np.array(marked, bool), sweep) == said
