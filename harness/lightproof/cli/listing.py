@@ -8,7 +8,7 @@ from itertools import groupby
 from pathlib import Path
 
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from lightproof import suite
@@ -19,6 +19,7 @@ from lightproof.scene import TAGS, Scene
 from lightproof.suite import Suite
 
 GROUPS = tuple(tag for tag in TAGS if tag not in (QUICK, NIGHTLY))
+EXTRAS = Text("An extra is installed with, for one, pip install 'lightproof[cycles]', all with pip install 'lightproof[all]'.")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -68,8 +69,11 @@ def _scenes(group: str, members: Sequence[Sequence[Scene]]) -> Table:
 
 
 def _methods() -> Table:
-    table = Table("method", "installed with", "runs", title="Methods", title_justify="left")
-    for entry in METHODS.values():
-        install = f"pip install 'lightproof[{entry.extra}]'" if entry.extra else "always there"
-        table.add_row(*map(Text, (entry.name, install, "nightly" if entry.nightly else "by default")))
+    """A row a family; only what has no option runs by default."""
+    table = Table(Column("method", no_wrap=True), "options, as in mitsuba/sobol", "extra", "runs", title="Methods",
+                  title_justify="left", caption=EXTRAS, caption_justify="left")
+    for name, members in groupby(METHODS.values(), key=lambda entry: entry.name.partition("/")[0]):
+        bare, *others = members
+        options = ", ".join(entry.name.partition("/")[2] for entry in others)
+        table.add_row(*map(Text, (name, options, bare.extra, "nightly" if bare.nightly else "by default")))
     return table
