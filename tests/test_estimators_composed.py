@@ -64,7 +64,7 @@ def traced(one: Scene, power: int, samples: int) -> tuple[np.ndarray, int, np.nd
 def test_directions_meet_what_rays_meet(cls, power):
     """A hexagon, a globe, a sun, two skies and a ball that blocks, over a level and a tilted receiver: kernel and tracer agree,
     and so do their variances per sample, though the kernel looks for one piece after the other."""
-    fast = prepared(cls, EVERYTHING).render(1 << 18, 5)
+    fast = prepared(cls, EVERYTHING).render(1 << 18, 6)
     film, samples, variance = traced(EVERYTHING, power, 1 << 18)
     assert (np.abs(fast.film - film) < SIGMAS * np.sqrt(fast.variance + variance)).all()
     assert fast.variance == pytest.approx(variance, rel=0.02)

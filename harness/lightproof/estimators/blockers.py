@@ -15,6 +15,7 @@ from lightproof.estimators.vectors import dot, like, sub
 from lightproof.scene import AreaLight, Scene, Surface
 
 CONTACT = 1e-12  # of a distance: what lies no farther in front of a plane than this coincides with it
+INLINED = {"forceinline": True}  # a call left in the loop would keep it out of vector registers
 INSIDE = 0.9999  # of a sphere's radius squared: what is nearer to its centre lies inside, and not on it by rounding
 
 
@@ -50,7 +51,7 @@ def visible(blockers, x, d):
     """Whether none of a tuple of blockers cuts the segment from x to x + d; with no blockers no code at all."""
 
 
-@overload(visible)
+@overload(visible, jit_options=INLINED)
 def _visible(blockers, x, d):
     if len(blockers) == 0:
         return lambda blockers, x, d: True
@@ -61,11 +62,12 @@ def hidden(blocker, x, d):
     """Whether a blocker cuts the segment from x to x + d."""
 
 
-@overload(hidden)
+@overload(hidden, jit_options=INLINED)
 def _hidden(blocker, x, d):
     if blocker.instance_class is Sphere:
         return _behind_sphere
-    return {Parallelogram: _behind_parallelogram, Triangle: _behind_triangle, Disk: _behind_disk}[blocker.instance_class]
+    behind = {Parallelogram: _behind_parallelogram, Triangle: _behind_triangle, Disk: _behind_disk}
+    return behind.get(blocker.instance_class)
 
 
 @fast

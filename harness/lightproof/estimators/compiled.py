@@ -20,9 +20,12 @@ from numba import njit
 SOURCES = Path(__file__).parent
 STRICT = {"contract", "nnan", "nsz"}  # leaves the order of operations alone: cancellations stay under control
 
+FAST = {"contract", "reassoc", "nnan", "ninf", "nsz", "afn"}  # all but the reciprocals that stand for divisions: refining an
+#                                                                estimate takes four slots of the multipliers, dividing three
+
 strict = njit(fastmath=STRICT, error_model="numpy")
 inlined = njit(fastmath=STRICT, error_model="numpy", forceinline=True)  # strict, and part of the loop that calls it
-fast = njit(fastmath=True, error_model="numpy")
+fast = njit(fastmath=FAST, error_model="numpy")
 
 
 def digest(folder: Path) -> str:
@@ -62,5 +65,5 @@ def kernel(fastmath: bool | set[str]) -> Callable[[Callable], Callable]:
     return compile_lazily
 
 
-fast_kernel = kernel(fastmath=True)
+fast_kernel = kernel(fastmath=FAST)
 strict_kernel = kernel(fastmath=STRICT)

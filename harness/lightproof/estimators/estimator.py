@@ -18,7 +18,6 @@ from lightproof.method import Method
 from lightproof.scene import Scene
 
 TASKS = 64  # pieces of work for one film, at most: fixed, so that the number of threads changes nothing
-SHARES = 4  # of a thread in the work, handed out as it gets done: evens out what else the machine does
 
 
 class Estimator(Method):
@@ -63,27 +62,30 @@ def spread(add: Callable, size: int, steps: int, columns: int, threads: int, mos
     columns) do not depend on `threads`."""
     tiles, spans = cuts(size, most), cuts(steps, most // size)
     sums = np.zeros((len(spans), size, columns))
+    tasks = [(part, tile) for part in range(len(spans)) for tile in tiles]
+    waiting = iter(tasks)
 
-    def work(share: list[tuple[int, tuple[int, int]]]) -> None:
-        for part, (first, last) in share:
+    def work() -> None:
+        for part, (first, last) in waiting:
             add(first, last, spans[part], sums[part, first:last])
 
-    tasks = [(part, tile) for part in range(len(spans)) for tile in tiles]
-    shares = SHARES * threads
-    list(workers(threads).map(work, [tasks[start::shares] for start in range(min(shares, len(tasks)))]))
+    helpers = [workers(threads).submit(work) for _ in range(min(threads, len(tasks)) - 1)]
+    work()
+    for helper in helpers:
+        helper.result()
     return sums.sum(axis=0)
 
 
 def cuts(count: int, pieces: int) -> list[tuple[int, int]]:
     """0 to `count` in so many pieces of about one size, none empty: first and last + 1 of each."""
-    edges = np.linspace(0, count, max(1, min(count, pieces)) + 1).astype(int).tolist()
-    return list(pairwise(edges))
+    pieces = max(1, min(count, pieces))
+    return list(pairwise(count * k // pieces for k in range(pieces + 1)))
 
 
 @cache
 def workers(threads: int) -> ThreadPoolExecutor:
-    """Threads that stay: starting them would take longer than a small film."""
-    return ThreadPoolExecutor(threads)
+    """Threads that help the one that asks, and stay: starting them would take longer than a small film."""
+    return ThreadPoolExecutor(threads - 1)
 
 
 def variance_of_mean(total: np.ndarray, square: np.ndarray, samples: int) -> np.ndarray | None:

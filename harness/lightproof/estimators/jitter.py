@@ -12,33 +12,38 @@ from typing import NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from lightproof.estimators.points import BLOCK, drawn, middle, opened
-from lightproof.estimators.rng import block_keys, draws, stream
+from lightproof.estimators.points import drawn, opened
+from lightproof.estimators.rng import BLOCK, TICK, block_keys, draws, stream
 from lightproof.estimators.vectors import like
 
-SIDE = 2**12  # cells along an axis, at most: products of their numbers stay exact; more samples go round again
+SIDE = 2**10  # cells along an axis, at most: quotients of their numbers stay exact in float32; more samples go round again
 GOLDEN = (math.sqrt(5) - 1) / 2
 
 
 class Jitter(NamedTuple):
-    """Cells `across` x `down`; `step` is the rotation from one cell of the element to the next."""
+    """Cells `across` x `down`; `step` is the rotation from one cell of the element to the next, `turns` (n,) its multiples for
+    the points of a block."""
 
     samples: int
     seed: int
     across: int
     down: int
     step: int
+    turns: np.ndarray
 
 
 class Cells(NamedTuple):
-    """A block: its first point, the cells along both axes, the rotation's step and offset, the keys of its random draws."""
+    """A block: its first cells of the light and of the element, the rotation from there, how many cells there are, and a cell's
+    size as a share of all, the keys of its random draws."""
 
-    first: float
+    first: int
+    start: int
+    turns: np.ndarray
+    count: int
     across: float
-    down: float
-    step: float
-    offset: float
-    keys: tuple[int, int, int, int]
+    width: float
+    height: float
+    keys: tuple
 
 
 def jitter(samples: int, seed: int) -> Jitter:
@@ -46,7 +51,9 @@ def jitter(samples: int, seed: int) -> Jitter:
     across = min(math.isqrt(samples), SIDE)
     down = min(samples // across, SIDE)
     cells = across * down
-    return Jitter(cells * max(1, samples // cells), seed, across, down, rotation(cells))
+    step = rotation(cells)
+    turns = (np.arange(min(cells, BLOCK)) * step % cells).astype(np.uint32)
+    return Jitter(cells * max(1, samples // cells), seed, across, down, step, turns)
 
 
 def rotation(cells: int) -> int:
@@ -62,9 +69,11 @@ def _opened(points, element, block):
 
 def _opened_jitter(points, element, block):
     own = stream(points.seed, element, 0)
-    across, down = np.float64(points.across), np.float64(points.down)
-    offset = np.float64(own % np.uint64(points.across * points.down))
-    return Cells(np.float64(block * BLOCK), across, down, np.float64(points.step), offset, block_keys(own, block))
+    count = points.across * points.down
+    first = block * BLOCK % count
+    start = (first * points.step + np.int64(own % np.uint64(count))) % count
+    shape = np.float64(points.across), 1 / points.across, 1 / points.down
+    return Cells(np.uint32(first), np.uint32(start), points.turns, np.uint32(count), *shape, block_keys(own, block))
 
 
 @overload(drawn)
@@ -74,32 +83,31 @@ def _drawn(i, opened, model):
 
 def _drawn_jitter(i, opened, model):
     a, b, c, d = draws(i, opened.keys, model)
-    count = opened.across * opened.down
-    index = opened.first + i
-    cell = remainder(index, count)
-    pair = remainder(cell * opened.step + opened.offset, count)
-    s, t = spread(cell, opened.across, opened.down, a, b)
-    return s, t, *spread(pair, opened.across, opened.down, c, d)
+    pair = np.uint32(opened.start + opened.turns[i])
+    pair = min(pair, np.uint32(pair - opened.count))  # a difference below zero is a large number
+    s, t = within(opened, like(model, np.int32(opened.first + np.uint32(i))), a, b)
+    return s, t, *within(opened, like(model, np.int32(pair)), c, d)
 
 
-def remainder(index, cells):
-    """Of whole numbers in floating point, which runs in vector registers; a half keeps the quotient off the integers."""
-
-
-@overload(remainder, inline="always")
-def _remainder(index, cells):
-    return lambda index, cells: index - cells * np.floor((index + 0.5) / cells)
-
-
-def spread(cell, across, down, s, t):
+def within(cells, cell, s, t):
     """A point of a cell from two draws, all in units of TICK."""
 
 
-@overload(spread, inline="always")
-def _spread(cell, across, down, s, t):
-    def place(cell, across, down, s, t):
-        row = np.floor((cell + 0.5) / across)
-        x, y = middle(cell - row * across, across), middle(row, down)
-        return like(s, x) + s * like(s, 1 / across), like(s, y) + t * like(s, 1 / down)
+@overload(within, inline="always")
+def _within(cells, cell, s, t):
+    def place(cells, cell, s, t):
+        width, height = like(s, cells.width), like(s, cells.height)
+        row = np.floor((cell + like(s, 0.5)) * width)  # the half keeps the quotient off whole numbers
+        column = cell - row * like(s, cells.across)
+        return middle(column, width) + s * width, middle(row, height) + t * height
 
     return place
+
+
+def middle(cell, size):
+    """The middle of a cell of [-1/2, 1/2], in units of TICK."""
+
+
+@overload(middle, inline="always")
+def _middle(cell, size):
+    return lambda cell, size: (cell + like(cell, 0.5)) * (size * like(cell, 1 / TICK)) - like(cell, 0.5 / TICK)

@@ -30,6 +30,15 @@ class Lamp(NamedTuple):
     strength: float
 
 
+class Tile(NamedTuple):
+    """A parallelogram's center + s u + t v with draws s and t in units of TICK, which its sides hold already."""
+
+    center: Vec3
+    u: Vec3
+    v: Vec3
+    normal: Vec3
+
+
 class Point(NamedTuple):
     """A point of `strength` [W/sr], the same in every direction."""
 
@@ -81,7 +90,21 @@ def _faced(lamp, origin, frame, model):
 
 
 def _faced_lamp(lamp, origin, frame, model):
-    return Lamp(placed(lamp.shape, origin, frame, model), like(model, lamp.strength))
+    return Lamp(drawable(placed(lamp.shape, origin, frame, model)), like(model, lamp.strength))
+
+
+def drawable(shape):
+    """The shape as `parameters` are drawn for it the cheapest."""
+
+
+@overload(drawable)
+def _drawable(shape):
+    return tile if shape.instance_class is Parallelogram else lambda shape: shape
+
+
+def tile(shape):
+    tick = like(shape.u[0], TICK)
+    return Tile(shape.center, scaled(tick, shape.u), scaled(tick, shape.v), shape.normal)
 
 
 def _faced_point(lamp, origin, frame, model):
@@ -120,10 +143,11 @@ def _arriving_sphere(lamp, x, s, t):
     w = sub(x, lamp.shape.center)
     r = math.sqrt(dot(w, w))
     zero, one = like(r, 0), like(r, 1)
-    height = max((r - lamp.shape.radius) / r, zero)
+    inverse = one / r
+    height = max((r - lamp.shape.radius) * inverse, zero)
     down = (s * like(s, TICK) + like(s, 0.5)) * height
     side = math.sqrt(max(down * (like(s, 2) - down), zero))
-    axis = scaled(one / r, w)
+    axis = scaled(inverse, w)
     e1, e2 = tangents(axis)
     sine, cosine = turn(t)
     n = along(along(scaled(one - down, axis), side * cosine, e1), side * sine, e2)
@@ -149,7 +173,11 @@ def parameters(shape, s, t):
 
 @overload(parameters)
 def _parameters(shape, s, t):
-    return {Parallelogram: _in_square, Triangle: _in_triangle, Disk: _in_circle}[shape.instance_class]
+    return {Tile: _in_tile, Parallelogram: _in_square, Triangle: _in_triangle, Disk: _in_circle}[shape.instance_class]
+
+
+def _in_tile(shape, s, t):
+    return s, t
 
 
 def _in_square(shape, s, t):

@@ -10,11 +10,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import overload
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic, overload
 
 from lightproof.estimators.points import BLOCK, drawn, opened
 from lightproof.estimators.rng import halves, mix64, stream, ticks
-from lightproof.estimators.sobol import reversed_bits
 from lightproof.estimators.vectors import like
 
 Z0, Z1, Z2, Z3 = np.array([1, 182667, 469891, 498753], np.uint32)
@@ -32,6 +33,16 @@ class Shift(NamedTuple):
 
     first: int
     shifts: tuple[int, int, int, int]
+
+
+@intrinsic
+def reversed_bits(context, x):
+    """The 32 bits of x in the other order, by one instruction of LLVM's, which runs in vector registers."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.bitreverse(builder.trunc(arguments[0], ir.IntType(32)))
+
+    return types.uint32(types.uint32), generate
 
 
 @overload(opened)

@@ -15,7 +15,7 @@ from numba.extending import overload
 from lightproof.estimators.compiled import fast
 from lightproof.estimators.lamps import arriving, faced
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, placed
+from lightproof.estimators.shapes import Flat, Sphere, covers, placed
 from lightproof.estimators.skies import Dome, placed_dome, sky_radiances
 from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.vectors import dot, like, scaled, sub
@@ -123,16 +123,3 @@ def _meet_sphere(light, x, w):
 
 def _meet_dome(light, x, w):
     return sky_radiances(light.skies, w), scaled(light.reach, w)
-
-
-def covers(shape, a, b):
-    """Whether a, b are parameters of a point of the flat shape."""
-
-
-@overload(covers)
-def _covers(shape, a, b):
-    return {
-        Parallelogram: lambda shape, a, b: (abs(a) <= like(a, 0.5)) & (abs(b) <= like(a, 0.5)),
-        Triangle: lambda shape, a, b: (a >= like(a, 0)) & (b >= like(a, 0)) & (a + b <= like(a, 1)),
-        Disk: lambda shape, a, b: a * a + b * b <= like(a, 1),
-    }[shape.instance_class]

@@ -10,12 +10,12 @@ import numpy as np
 from lightproof.estimators.jitter import jitter
 from lightproof.estimators.lattice import Lattice
 from lightproof.estimators.points import Random
-from lightproof.estimators.sobol import Sobol
+from lightproof.estimators.sobol import sobol
 
 Choices = Mapping[str, Mapping[str, Any]]
 
 SAMPLING: Choices = {  # kind -> name -> what it stands for; the first of a kind is the default
-    "points": {"independent": Random, "jitter": jitter, "lattice": Lattice, "sobol": Sobol},
+    "points": {"independent": Random, "jitter": jitter, "lattice": Lattice, "sobol": sobol},
     "precision": {"float32": np.float32, "float64": np.float64},
 }
 

@@ -14,12 +14,13 @@ from lightproof.estimators.estimator import TASKS, spread
 from lightproof.estimators.kernel import estimate
 from lightproof.estimators.lamps import Beam, Lamp, Point
 from lightproof.estimators.meeting import Cosine, Uniform
+from lightproof.estimators.parallel import Level, levelled
 from lightproof.estimators.points import BLOCK, Grid, Random
 from lightproof.estimators.shapes import Flat, Sphere
 from lightproof.estimators.views import View
 from lightproof.scene import Scene
 
-WORTHWHILE = 2**15  # samples: a task takes longer than to hand it to a thread
+WORTHWHILE = 2**17  # samples: a task takes longer than to hand it to a thread
 FEW = 3  # blockers that are worth a kernel of their own
 REACH = 1e4  # sizes of the scene: the length of a shadow ray along a beam or to the sky
 
@@ -28,9 +29,10 @@ Source = Lamp | Point | Beam | Uniform | Cosine | Aim
 
 @dataclass(frozen=True)
 class Piece:
-    """One piece of a light with what can shadow it."""
+    """One piece of a light with what can shadow it; `source` is the lamp as the kernel takes it."""
 
     lamp: Source
+    source: Source | Level
     blockers: tuple[Flat | Sphere, ...] | np.ndarray
 
     @property
@@ -43,7 +45,7 @@ class Piece:
 
         def add(first: int, last: int, blocks: tuple[int, int], out: np.ndarray) -> None:
             slopes = None if view.slopes is None else view.slopes[first:last]
-            estimate(self.lamp, self.blockers, view.receivers[first:last], slopes, first, points, blocks, model, out)
+            estimate(self.source, self.blockers, view.receivers[first:last], slopes, first, points, blocks, model, out)
 
         size = len(view.receivers)
         tasks = min(max(1, size * points.samples // WORTHWHILE), TASKS)
@@ -74,4 +76,6 @@ def shadowed(scene: Scene, view: View, owner: str, source: Source) -> Piece:
     """A source of the light `owner` with what can stand before it."""
     shape = getattr(source, "shape", getattr(source, "light", None))
     blockers = between(scene, owner, shape if isinstance(shape, Flat | Sphere) else None, view.plane)
-    return Piece(source, tuple(blockers) if len(blockers) <= FEW else crowd.rows(blockers))
+    if len(blockers) > FEW:
+        return Piece(source, source, crowd.rows(blockers))
+    return Piece(source, *levelled(source, tuple(blockers), view.plane))

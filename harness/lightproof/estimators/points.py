@@ -13,14 +13,12 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from lightproof.estimators.rng import TICK, block_keys, draws, stream
+from lightproof.estimators.rng import BLOCK, TICK, block_keys, draws, stream
 from lightproof.estimators.vectors import like
-
-BLOCK = 2048  # points between two draws of the lattice's shift, summed in the kernel's precision; blocks add in float64
 
 
 class Random(NamedTuple):
-    """Hashed lattice points, see `rng`; every element and block has its own random key."""
+    """Points of lattices, see `rng`; every element and block has its own random key."""
 
     samples: int
     seed: int
@@ -69,7 +67,7 @@ def drawn(i, opened, model):
 
 @overload(drawn)
 def _drawn(i, opened, model):
-    if isinstance(opened, types.UniTuple):
+    if isinstance(opened, types.BaseTuple) and not hasattr(opened, "instance_class"):
         return lambda i, opened, model: draws(i, opened, model)
     return _drawn_midpoint if getattr(opened, "instance_class", None) is Line else None
 

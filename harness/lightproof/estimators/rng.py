@@ -1,9 +1,11 @@
 """Random numbers by counter: a draw is a pure function of (seed, element, stream, index), so threads and order change nothing.
 
-Within a block of samples one 32-bit hash h gives up to four coordinates: h, a h, a2 h, a3 h modulo 2^32, a point of a
-Korobov lattice of 2^32 points picked at random, moved by a shift that is drawn afresh for every block. Each coordinate is
-uniform over all 2^32 values, and the shifts keep the estimate free of bias. The multiplier a is one of the full-period
-generators of L'Ecuyer 1999, "Tables of linear congruential generators of different sizes and good lattice structure".
+The samples of a block are points of a Korobov lattice of 2^32 points: k r, a k r, a2 k r, a3 k r modulo 2^32, where r is
+one of BLOCK random numbers that all blocks share, and k an odd number drawn afresh for every block, as is a shift of each
+coordinate. The shift makes each point uniform, which keeps the estimate free of bias; k makes two points of a block
+uncorrelated. A table costs a load a sample where a hash would cost two multiplications and a long wait. The multiplier a is
+one of the full-period generators of L'Ecuyer 1999, "Tables of linear congruential generators of different sizes and good
+lattice structure".
 """
 
 from __future__ import annotations
@@ -13,6 +15,8 @@ import numpy as np
 from lightproof.estimators.compiled import fast, strict
 from lightproof.estimators.vectors import like
 
+BLOCK = 2048  # points between two draws of the lattice's shift, summed in the kernel's precision; blocks add in float64
+TABLE = (np.random.PCG64(BLOCK).random_raw(BLOCK) >> np.uint64(32)).astype(np.uint32)
 A1 = np.uint32(32310901)
 A2 = np.uint32(32310901**2 % 2**32)
 A3 = np.uint32(32310901**3 % 2**32)
@@ -49,17 +53,11 @@ def halves(key):
 
 @strict
 def block_keys(key, block):
-    """For a block of samples of stream `key`: the counter's offset, and the shifts of the lattice's last three coordinates."""
-    own = mix64(key ^ np.uint64(block))
-    return *halves(own), *halves(mix64(own))
-
-
-@fast
-def hash32(index, key):
-    """Two rounds of xorshift and multiply (constants of Wellons' lowbias32) over a counter offset by a random key."""
-    x = np.uint32(np.uint32(index) + key)
-    x = np.uint32(np.uint32(x ^ np.uint32(x >> np.uint32(16))) * np.uint32(0x7FEB352D))
-    return np.uint32(np.uint32(x ^ np.uint32(x >> np.uint32(15))) * np.uint32(0x846CA68B))
+    """For a block of samples of stream `key`: multipliers and shifts of the lattice's four coordinates."""
+    a = mix64(key ^ np.uint64(block))
+    b, c = mix64(a), mix64(a ^ np.uint64(1))
+    k = np.uint32(halves(a)[0] | np.uint32(1))
+    return (k, np.uint32(k * A1), np.uint32(k * A2), np.uint32(k * A3)), (*halves(b), *halves(c))
 
 
 @fast
@@ -71,6 +69,6 @@ def ticks(h, multiplier, shift):
 @fast
 def draws(index, keys, model):
     """The four coordinates of sample `index` of a block, in units of TICK and in the type of `model`."""
-    h = hash32(index, keys[0])
-    s, t = like(model, np.int32(h)), like(model, ticks(h, A1, keys[1]))
-    return s, t, like(model, ticks(h, A2, keys[2])), like(model, ticks(h, A3, keys[3]))
+    r, (k, shift) = TABLE[index], keys
+    s, t = like(model, ticks(r, k[0], shift[0])), like(model, ticks(r, k[1], shift[1]))
+    return s, t, like(model, ticks(r, k[2], shift[2])), like(model, ticks(r, k[3], shift[3]))

@@ -137,7 +137,7 @@ def placed(shape, origin, frame, model):
 
 @overload(placed)
 def _placed(shape, origin, frame, model):
-    return placed_sphere if shape.instance_class is Sphere else PLACED[shape.instance_class]
+    return placed_sphere if shape.instance_class is Sphere else PLACED.get(shape.instance_class)
 
 
 def placed_sphere(shape, origin, frame, model):
@@ -159,6 +159,19 @@ def _placed_flat(kind):
 
 
 PLACED = {kind: _placed_flat(kind) for kind in (Parallelogram, Triangle, Disk)}
+
+
+def covers(shape, a, b):
+    """Whether a, b are parameters of a point of the flat shape."""
+
+
+@overload(covers)
+def _covers(shape, a, b):
+    return {
+        Parallelogram: lambda shape, a, b: (abs(a) <= like(a, 0.5)) & (abs(b) <= like(a, 0.5)),
+        Triangle: lambda shape, a, b: (a >= like(a, 0)) & (b >= like(a, 0)) & (a + b <= like(a, 1)),
+        Disk: lambda shape, a, b: a * a + b * b <= like(a, 1),
+    }[shape.instance_class]
 
 
 def support(part: Flat | Sphere, direction: np.ndarray) -> np.ndarray:

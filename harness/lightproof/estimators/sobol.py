@@ -1,9 +1,11 @@
-"""Sobol's sequence in four dimensions with Owen's scrambling, hashed, afresh for every element.
+"""Sobol's sequence in four dimensions, scrambled at random, afresh for every film, and shifted at random for every element.
 
-Coordinates are 32-bit integers with their bits reversed, as Burley 2020, "Practical hash-based Owen scrambling", keeps them:
-there a hash of Laine and Karras 2011, whose bits depend on lower bits alone, is a nested uniform scramble. The constants
-are Vegdahl's (2021, "Building a better LK hash"), with a multiplier of its own, so that the added key alone makes every
-coordinate uniform, whatever the index. Direction numbers: Joe and Kuo 2008.
+Matousek 1998, "On the L2-discrepancy for anchored boxes": the digits of a point, most significant first, are multiplied by a
+random lower triangular matrix of bits, here of equal diagonals (Tezuka and Faure 2003, "I-binomial scrambling of digital
+nets and sequences"), and then shifted by random digits. Owen 2003, "Variance with alternative scramblings of digital nets":
+the variance is that of Owen's own scrambling. The shift alone makes every point uniform, so that elements share a matrix and
+their errors are yet uncorrelated. All this is linear: a table serves every block of every element, and a sample costs one
+exclusive or a coordinate. Direction numbers: Joe and Kuo 2008.
 """
 
 from __future__ import annotations
@@ -11,74 +13,76 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic, overload
+from numba.extending import overload
 
-from lightproof.estimators.compiled import fast
-from lightproof.estimators.points import BLOCK, drawn, opened
-from lightproof.estimators.rng import halves, mix64, stream
+from lightproof.estimators.compiled import strict, strict_kernel
+from lightproof.estimators.points import drawn, opened
+from lightproof.estimators.rng import BLOCK, halves, mix64, stream
 from lightproof.estimators.vectors import like
 
 BITS = 32
-POLYNOMIALS = (((), ()), ((1,), (1,)), ((1, 1), (1, 3)), ((0, 1, 1), (1, 3, 1)))  # coefficients, and the first odd numbers m
+WITHIN = BLOCK.bit_length() - 1  # bits of an index within its block
 
 
 class Sobol(NamedTuple):
-    """The first `samples` points of the sequence."""
+    """The first `samples` points of the sequence: scrambled direction numbers (4, BITS), and what the points of a block are
+    beyond its first one (4, BLOCK or `samples`)."""
 
     samples: int
     seed: int
+    directions: np.ndarray
+    table: np.ndarray
 
 
-class Scramble(NamedTuple):
-    """A block: the sequence's point at its first index, and keys to add and to multiply by, of four coordinates each."""
+class Net(NamedTuple):
+    """A block: the table, and the block's first point."""
 
+    table: np.ndarray
     start: tuple[int, int, int, int]
-    shifts: tuple[int, int, int, int]
-    factors: tuple[int, int, int, int]
 
 
-def directions(coefficients: tuple[int, ...], m: tuple[int, ...]) -> list[int]:
-    """Direction numbers (BITS,) with reversed bits, by the recurrence of a primitive polynomial (none: van der Corput's)."""
-    numbers, degree = list(m) or [1] * BITS, len(m)
-    for k in range(len(numbers), BITS):
-        terms = [(numbers[k - j - 1] << (j + 1)) * c for j, c in enumerate(coefficients)]
-        numbers.append(int(np.bitwise_xor.reduce([numbers[k - degree], *terms])))
-    return [int(format(number << (BITS - 1 - k), f"0{BITS}b")[::-1], 2) for k, number in enumerate(numbers)]
+def sobol(samples: int, seed: int) -> Sobol:
+    """The sequence, scrambled."""
+    return Sobol(samples, seed, *scrambled(seed, min(samples, BLOCK)))
 
 
-def combined(columns: np.ndarray) -> np.ndarray:
-    """The points of indices 0 to 2^n - 1 from the direction numbers of their n bits."""
-    table = np.zeros(1, np.uint32)
-    for column in columns:
-        table = np.concatenate([table, table ^ column])
+@strict_kernel
+def scrambled(seed, count):
+    """Direction numbers and a table of `count` points from a random matrix for each dimension."""
+    key = stream(seed, 0, 1)
+    (a, b), (c, d) = halves(key), halves(mix64(key))
+    regular = np.uint32(2**31)
+    numbers = directions(a | regular, b | regular, c | regular, d | regular)
+    return numbers, combined(numbers, count)
+
+
+@strict
+def directions(a, b, c, d):
+    """Direction numbers (4, BITS) times the matrix whose columns are a (b, c, d in the other dimensions) shifted down. Such a
+    product commutes with shifts, so that it follows the recurrences of the numbers themselves, which 2^31 gives."""
+    v = np.empty((4, BITS), np.uint32)
+    v[0, 0], v[1, 0], v[2, 0], v[3, 0] = a, b, c, d
+    v[0, 1], v[1, 1], v[2, 1], v[3, 1] = a >> 1, b ^ b >> 1, c ^ c >> 1, d ^ d >> 1
+    v[0, 2], v[1, 2], v[2, 2], v[3, 2] = a >> 2, b ^ b >> 2, c >> 1 ^ c >> 2, d >> 2
+    for k in range(3, BITS):
+        v[0, k] = v[0, k - 1] >> 1
+        v[1, k] = v[1, k - 1] ^ v[1, k - 1] >> 1
+        v[2, k] = v[2, k - 1] ^ v[2, k - 2] ^ v[2, k - 2] >> 2
+        v[3, k] = v[3, k - 2] ^ v[3, k - 3] ^ v[3, k - 3] >> 3
+    return v
+
+
+@strict
+def combined(numbers, count):
+    """The points (4, count) of indices from 0 on: those from 2^k on are those before and direction number k."""
+    table = np.zeros((len(numbers), count), np.uint32)
+    for axis in range(len(numbers)):
+        first, bit = 1, 0
+        while first < count:
+            for i in range(first, min(2 * first, count)):
+                table[axis, i] = table[axis, i - first] ^ numbers[axis, bit]
+            first, bit = 2 * first, bit + 1
     return table
-
-
-DIRECTIONS = np.array([directions(*polynomial) for polynomial in POLYNOMIALS], np.uint32)
-WITHIN = BLOCK.bit_length() - 1  # bits of an index within its block
-TABLE_1, TABLE_2, TABLE_3 = (combined(row[:WITHIN]) for row in DIRECTIONS[1:])
-
-
-@intrinsic
-def reversed_bits(context, x):
-    """The 32 bits of x in the other order, by one instruction of LLVM's, which runs in vector registers."""
-
-    def generate(context, builder, signature, arguments):
-        return builder.bitreverse(builder.trunc(arguments[0], ir.IntType(BITS)))
-
-    return types.uint32(types.uint32), generate
-
-
-@fast
-def point(block, axis):
-    """Coordinate `axis` of the first point of a block."""
-    x = np.uint32(0)
-    for bit in range(WITHIN, BITS):
-        if (block >> (bit - WITHIN)) & 1:
-            x = np.uint32(x ^ DIRECTIONS[axis, bit])
-    return x
 
 
 @overload(opened)
@@ -87,38 +91,29 @@ def _opened(points, element, block):
 
 
 def _opened_sobol(points, element, block):
-    own = stream(points.seed, element, 0)
-    a, b, c, d = mix64(own ^ np.uint64(1)), mix64(own ^ np.uint64(2)), mix64(own ^ np.uint64(3)), mix64(own ^ np.uint64(4))
-    shifts = halves(a)[0], halves(b)[0], halves(c)[0], halves(d)[0]
-    factors = halves(a)[1], halves(b)[1], halves(c)[1], halves(d)[1]
-    return Scramble((point(block, 0), point(block, 1), point(block, 2), point(block, 3)), shifts, factors)
+    own = mix64(stream(points.seed, element, 0))
+    (a, b), (c, d) = halves(own), halves(mix64(own))
+    v = points.directions
+    return Net(points.table, (a ^ first(v[0], block), b ^ first(v[1], block), c ^ first(v[2], block), d ^ first(v[3], block)))
+
+
+@strict
+def first(numbers, block):
+    """The first point of a block, not shifted."""
+    x, bit = np.uint32(0), WITHIN
+    while block:
+        if block & 1:
+            x ^= numbers[bit]
+        block, bit = block >> 1, bit + 1
+    return x
 
 
 @overload(drawn)
 def _drawn(i, opened, model):
-    return _drawn_sobol if getattr(opened, "instance_class", None) is Scramble else None
+    return _drawn_sobol if getattr(opened, "instance_class", None) is Net else None
 
 
 def _drawn_sobol(i, opened, model):
-    return (
-        scrambled(np.uint32(i), opened, 0, model),
-        scrambled(TABLE_1[i], opened, 1, model),
-        scrambled(TABLE_2[i], opened, 2, model),
-        scrambled(TABLE_3[i], opened, 3, model),
-    )
-
-
-@fast
-def scrambled(x, block, axis, model):
-    """A coordinate in units of TICK from what its point adds to the block's first."""
-    x = hashed(np.uint32(x ^ block.start[axis]), block.shifts[axis], block.factors[axis])
-    return like(model, np.int32(reversed_bits(x)))
-
-
-@fast
-def hashed(x, shift, factor):
-    """A permutation of 32 bits in which each depends on itself and lower ones."""
-    x = np.uint32(x ^ np.uint32(x * np.uint32(0x3D20ADEA)))
-    x = np.uint32(np.uint32(x + shift) * np.uint32(factor | np.uint32(1)))
-    x = np.uint32(x ^ np.uint32(x * np.uint32(0x05526C56)))
-    return np.uint32(x ^ np.uint32(x * np.uint32(0x53A22864)))
+    table, start = opened
+    s, t = like(model, np.int32(table[0, i] ^ start[0])), like(model, np.int32(table[1, i] ^ start[1]))
+    return s, t, like(model, np.int32(table[2, i] ^ start[2])), like(model, np.int32(table[3, i] ^ start[3]))
