@@ -26,7 +26,7 @@ from rows import Estimate, Row
 NAME = "accuracy"
 TAGS = ("direct", "shadow", "furnace")
 FIRST, FACTOR, MOST = 1, 4, 4**15  # samples per element
-FEWEST = 5  # steps, whatever they take: fewer do not tell how the error falls
+FEWEST, PATIENCE = 5, 5  # steps that tell how the error falls, and so many times the seconds that their films may take
 ENOUGH = 0.5 * min(ERRORS)
 OURS_SHARE = 0.2  # of a renderer's time that a film of ours may take: there are many of them, and the best need far less
 CHOICE_SHARE = 0.2  # of a renderer's time that a film may take while its configuration is chosen
@@ -80,7 +80,7 @@ def climb(track: Track, scene: Scene, scale: Scale, entry: Entry, seconds: float
         results.append(track.render(films[-1], 0))
         if results[-1].status is not Status.OK or rms(results[-1], scale) <= ENOUGH:
             break
-        if len(films) >= FEWEST and FACTOR * results[-1].seconds["render"] > seconds:
+        if FACTOR * results[-1].seconds["render"] > (seconds if len(films) >= FEWEST else PATIENCE * seconds):
             break
         samples *= FACTOR
     return films, results

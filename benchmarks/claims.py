@@ -83,6 +83,8 @@ def race(scene: str, climbed: Sequence[Ladder], error: float, target: float, sam
     rounds = min(len(best.rounds), len(other.rounds))
     measured = over_rounds(rounds, lambda chosen: other.time_to(error, chosen) / best.time_to(error, chosen))
     notes = [f"{spoken(other, error)} over {spoken(best, error)}"]
+    if {best.kind(error), other.kind(error)} == {AT_MOST}:
+        notes.append("both from the first sample on, so that only overheads are compared")
     if not sampling and best.method != EXACT and any(one.method == EXACT for one in ours):
         notes.append(f"{EXACT} is not the fastest")
     return Claim(text, scene, measured, target, note="; ".join(notes))

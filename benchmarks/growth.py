@@ -27,6 +27,7 @@ GRID = [16, 12]
 ELEMENTS = ([1, 1], [4, 3], [16, 12], [64, 48], [256, 192], [1000, 1000])
 SAMPLES = tuple(4**power for power in range(3, 12))
 COUNTS = (1, 3, 10, 30, 100, 300, 1000)
+LONGEST = 4  # times what a renderer's film may take: a method that would take longer, in proportion, stops
 SIDE = 0.7  # of its place, of a small square
 
 Add = Callable[[Iterable[Row]], None]
@@ -53,9 +54,9 @@ def measure(track: Track, add: Add, rounds: int, quick: bool, tracks: dict[int, 
 
 
 def curve(track: Track, points: list[Point], entries: list[Entry], add: Add, rounds: int) -> None:
-    """Every method at every point, in turn; a method that took too long, or failed, goes no further."""
+    """Every method at every point, in turn; a method that failed, or would take too long, goes no further."""
     running = list(entries)
-    for point in points:
+    for point, following in zip(points, [*points[1:], points[-1]], strict=True):
         track.tell(f"{NAME}: {point.parameter} {point.amount:,}")
         films = [Film(entry, point.scene, max(1, round(SHARES[entry.name] * point.samples))) for entry in running]
         firsts = {film: track.render(film, 0) for film in films}
@@ -65,7 +66,8 @@ def curve(track: Track, points: list[Point], entries: list[Entry], add: Add, rou
             track.race(taken, rounds)
         finally:
             add(row for film, results in taken.items() for row in rows(point, film, results))
-        running = [film.entry for film, results in taken.items() if results and results[-1].seconds["render"] < track.seconds]
+        longest = LONGEST * track.seconds * point.amount / following.amount
+        running = [film.entry for film, results in taken.items() if results and results[-1].seconds["render"] < longest]
 
 
 def rows(point: Point, film: Film, results: list[Result]) -> list[Row]:

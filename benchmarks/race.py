@@ -55,10 +55,6 @@ class Track:
             return False
         return True
 
-    def is_deterministic(self, entry: Entry) -> bool:
-        """Whether an opened method's films have no noise."""
-        return self._pool.open(entry).deterministic
-
     def render(self, film: Film, turn: int) -> Result:
         """The film once, with a seed for each turn; a renderer's fault is in the result."""
         scene, method = film.scene, film.entry.name

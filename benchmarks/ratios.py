@@ -9,7 +9,7 @@ from scipy.stats import bootstrap
 
 from rows import LEVEL, Estimate
 
-RESAMPLES = 499
+RESAMPLES = 299
 SEED = 1
 
 

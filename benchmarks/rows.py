@@ -61,7 +61,7 @@ class Row:
     def record(self) -> dict[str, Any]:
         """The row as the CSV has it."""
         known = dict(zip(("median", "low", "high"), (self.median, *self.interval), strict=True))
-        numbers = {name: "" if np.isnan(value) else value for name, value in known.items()}
+        numbers = {name: "" if np.isnan(value) else f"{value:.6g}" for name, value in known.items()}
         each = " ".join(f"{one:.6g}" for one in self.each)
         return {**{name: getattr(self, name) for name in ABOUT}, **numbers, "rounds": len(self.each), "each": each}
 

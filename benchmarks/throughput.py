@@ -20,15 +20,15 @@ from rows import Row
 NAME = "throughput"
 SCENES = ("square-light", "occluded-square")
 RESOLUTION = (128, 96)
-MANY, FEW = 4096, 64  # samples per element: of what is compared with Mitsuba, and with the slower renderers
+MANY, FEW = 2048, 64  # samples per element: of what is compared with Mitsuba, and with the slower renderers
 LOOP = Entry("mitsuba-loop", f"{Path(__file__).parent / 'mitsuba_loop.py'}:Loop", worker="mitsuba-loop", extra="mitsuba")
-CHOOSING = 3  # rounds that choose Mitsuba's configuration
+CHOOSING = 3  # rounds that choose Mitsuba's configuration, at half the samples
 
 
 def measure(track: Track, add: Callable[[Iterable[Row]], None], rounds: int, quick: bool) -> None:
     """One race a scene and number of samples."""
     for name in SCENES[: 1 if quick else None]:
-        many, resolution = (MANY // 16, (32, 24)) if quick else (MANY, RESOLUTION)
+        many, resolution = (MANY // 8, (32, 24)) if quick else (MANY, RESOLUTION)
         scene = suite.default().scene(name)
         scene = replace(scene, film=replace(scene.film, resolution=resolution))
         slower = [entry for family, entries in renderers().items() if family != "mitsuba" for entry in entries[:1]]
@@ -40,7 +40,7 @@ def fastest(track: Track, scene: Scene, samples: int, add: Callable[[Iterable[Ro
     """Mitsuba's LLVM configuration with most samples a second, out of all; none where there is no Mitsuba."""
     vectorised = [entry for entry in renderers()["mitsuba"] if entry.name not in ("mitsuba/scalar", "mitsuba/spectral")]
     rows: list[Row] = []
-    race(track, scene, vectorised, samples, CHOOSING, rows.extend, name="choice")
+    race(track, scene, vectorised, samples // 2, CHOOSING, rows.extend, name="choice")
     rates = {row.method: row.median for row in rows if row.phase == "render" and row.each}
     best = max(rates, key=rates.get, default=None)
     add(replace(row, note="chosen") if row.method == best and row.phase == "render" else row for row in rows)
