@@ -16,6 +16,7 @@ from numba import njit
 import multiply_adds
 import operations
 from lightproof import suite
+from lightproof.estimators.compiled import FAST
 from lightproof.estimators.estimator import TASKS
 from lightproof.estimators.kernel import estimate
 from lightproof.estimators.mc_area import McArea
@@ -57,7 +58,7 @@ def measure(track: Track, add: Add, rounds: int, quick: bool) -> None:
 
 def assembly() -> str:
     """Of the kernel as `mc-area` has it on the scene; compiled anew, for what comes from the cache cannot be looked at."""
-    anew = njit(nogil=True, fastmath=True, error_model="numpy")(estimate.py_func)
+    anew = njit(nogil=True, fastmath=FAST, error_model="numpy")(estimate.py_func)
     anew.compile(estimate.signatures[-1])
     return next(iter(anew.inspect_asm().values()))
 
@@ -99,7 +100,7 @@ def film(method: McArea, samples: int) -> Rate:
 
 def loop(method: McArea, run: Callable, threads: int, samples: int) -> Rate:
     """Samples a second of a variant of the loop, elements spread over threads."""
-    lamp, blocks = method.pieces[0].lamp, max(1, samples // BLOCK)
+    lamp, blocks = method.pieces[0].source, max(1, samples // BLOCK)
 
     def part(receivers: np.ndarray) -> None:
         run(lamp, receivers, Random(blocks * BLOCK, 1), blocks, np.float32(1))

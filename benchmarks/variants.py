@@ -1,4 +1,4 @@
-"""The inner loop of `mc-area` under a flat light with parts of it left out, to see what each part costs."""
+"""The inner loop of `mc-area` under a flat light parallel to the film with parts of it left out, to see what each part costs."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
+from lightproof.estimators.compiled import FAST
 from lightproof.estimators.kernel import cell_of, on_cell
 from lightproof.estimators.lamps import arriving, faced, parameters
 from lightproof.estimators.points import BLOCK, drawn, opened
-from lightproof.estimators.vectors import along, dot, like, sub
+from lightproof.estimators.vectors import like
 
-inline = njit(fastmath=True, error_model="numpy")
+inline = njit(fastmath=FAST, error_model="numpy")
 
 
 @inline
@@ -22,10 +23,10 @@ def as_it_is(i, block, model):
 
 @inline
 def counted(i, block, model):
-    """The block's keys plus the sample's number, neither hashed nor multiplied."""
-    at = np.uint32(i)
-    return (like(model, np.int32(np.uint32(at + block[0]))), like(model, np.int32(np.uint32(at + block[1]))),
-            like(model, np.int32(np.uint32(at + block[2]))), like(model, np.int32(np.uint32(at + block[3]))))
+    """The block's shifts plus the sample's number, neither from a table nor multiplied."""
+    at, (_, shift) = np.uint32(i), block
+    return (like(model, np.int32(np.uint32(at + shift[0]))), like(model, np.int32(np.uint32(at + shift[1]))),
+            like(model, np.int32(np.uint32(at + shift[2]))), like(model, np.int32(np.uint32(at + shift[3]))))
 
 
 @inline
@@ -37,11 +38,11 @@ def divided(lamp, x, s, t):
 def multiplied(lamp, x, s, t):
     """The same with a product in the place of the quotient: a wrong number, at the speed of a right one."""
     a, b = parameters(lamp.shape, s, t)
-    d = sub(along(along(lamp.shape.center, a, lamp.shape.u), b, lamp.shape.v), x)
-    r2 = dot(d, d)
-    zero = like(r2, 0)
-    before = dot(x, lamp.shape.normal) - dot(lamp.shape.center, lamp.shape.normal)
-    return max(d[2], zero) * max(before, zero) * (r2 * r2)
+    center, u, v = lamp.shape.center, lamp.shape.u, lamp.shape.v
+    d0, d1 = center[0] + a * u[0] + b * v[0] - x[0], center[1] + a * u[1] + b * v[1] - x[1]
+    h2 = center[2] * center[2]
+    r2 = d0 * d0 + d1 * d1 + h2
+    return h2 * (r2 * r2)
 
 
 @inline
@@ -57,7 +58,7 @@ def alone(total, square, f):
 def compiled(draw: Callable, value: Callable, add: Callable) -> Callable:
     """The loop of these parts: (lamp, receivers, points, blocks, model) -> a sum over elements, blocks and samples."""
 
-    @njit(fastmath=True, error_model="numpy", nogil=True)
+    @njit(fastmath=FAST, error_model="numpy", nogil=True)
     def loop(lamp, receivers, points, blocks, model):
         whole = 0.0
         for e in range(len(receivers)):
