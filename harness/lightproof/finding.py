@@ -132,8 +132,8 @@ def _blindness(rung: Rung) -> str:
     worst = int(np.argmax(rung.unseen))
     leap = "without bound" if np.isinf(rung.leap[worst]) else f"by up to {100 * rung.leap[worst]:.2g} %"
     return (f"{rung.scale.place(worst)} is off by {_interval(rung, worst)}, yet a single sample could move it {leap}, so that"
-            " what no sample met cannot be told from what is not there; samples of the light's solid angle, as mc-solid-angle"
-            " draws them, are bounded")
+            " what no sample met cannot be told from what is not there; directions into the light, as mc-solid-angle draws them,"
+            " weigh 4 pi L at most")
 
 
 def _interval(rung: Rung, index: int) -> str:

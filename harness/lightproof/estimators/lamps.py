@@ -22,6 +22,8 @@ from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.vectors import along, dot, like, scaled, sub, tangents, turned
 from lightproof.geometry import Vec3
 
+LEAST = 1e-37  # square of a length [m2]: what is left of smaller ones in float32 is no number
+
 
 class Lamp(NamedTuple):
     """A shape that emits from its front. `strength`: radiance over density per area [W/sr]; of a sphere, the radiance."""
@@ -37,6 +39,15 @@ class Tile(NamedTuple):
     u: Vec3
     v: Vec3
     normal: Vec3
+
+
+class Facing(NamedTuple):
+    """A lamp as seen from an element. `level` is what float32 could not tell from the rest: the element's height over the plane
+    of a flat shape [m], or the square of its distance from a sphere's centre less that of the radius [m2]."""
+
+    shape: Tile | Triangle | Disk | Sphere
+    strength: float
+    level: float
 
 
 class Point(NamedTuple):
@@ -90,7 +101,25 @@ def _faced(lamp, origin, frame, model):
 
 
 def _faced_lamp(lamp, origin, frame, model):
-    return Lamp(drawable(placed(lamp.shape, origin, frame, model)), like(model, lamp.strength))
+    level = like(model, level_of(lamp.shape, sub(origin, lamp.shape.center)))
+    return Facing(drawable(placed(lamp.shape, origin, frame, model)), like(model, lamp.strength), level)
+
+
+def level_of(shape, w):
+    """The `level` of what lies at `w` from the shape's centre, in float64."""
+
+
+@overload(level_of)
+def _level_of(shape, w):
+    return beyond if shape.instance_class is Sphere else lambda shape, w: dot(w, shape.normal)
+
+
+def beyond(shape, w):
+    """w^2 - R^2, the largest component by itself, so that nothing cancels along an axis."""
+    a, b, c = abs(w[0]), abs(w[1]), abs(w[2])
+    most, least = max(a, b, c), min(a, b, c)
+    middle = max(min(a, b), min(max(a, b), c))
+    return (most - shape.radius) * (most + shape.radius) + middle * middle + least * least
 
 
 def drawable(shape):
@@ -124,7 +153,7 @@ def arriving(lamp, x, s, t):
 
 @overload(arriving)
 def _arriving(lamp, x, s, t):
-    if lamp.instance_class is Lamp:
+    if lamp.instance_class is Facing:
         return _arriving_sphere if lamp.types[0].instance_class is Sphere else _arriving_flat
     return {Point: _arriving_point, Beam: _arriving_beam}.get(lamp.instance_class)
 
@@ -132,29 +161,30 @@ def _arriving(lamp, x, s, t):
 def _arriving_flat(lamp, x, s, t):
     a, b = parameters(lamp.shape, s, t)
     d = sub(along(along(lamp.shape.center, a, lamp.shape.u), b, lamp.shape.v), x)
-    r2 = dot(d, d)
-    zero = like(r2, 0)
-    before = dot(x, lamp.shape.normal) - dot(lamp.shape.center, lamp.shape.normal)
-    return max(d[2], zero) * max(before, zero) / (r2 * r2), d
+    zero, inverse = like(x[0], 0), like(x[0], 1) / dot(d, d)
+    before = dot(x, lamp.shape.normal) + lamp.level
+    return max(d[2], zero) * inverse * (max(before, zero) * inverse), d
 
 
 def _arriving_sphere(lamp, x, s, t):
-    """A point uniform on the cap of the sphere that faces x, of area 2 pi R^2 (1 - R/r); black from inside."""
-    w = sub(x, lamp.shape.center)
+    """A point uniform on the cap of the sphere that faces x, of area 2 pi R^2 (1 - R/r); black from inside. A share u of the way
+    down the cap, d = R side - (R u h + gap) axis and -d . n = gap (1 - u), gap = r - R and h = gap/r: nothing cancels."""
+    w, radius = sub(x, lamp.shape.center), lamp.shape.radius
     r = math.sqrt(dot(w, w))
     zero, one = like(r, 0), like(r, 1)
+    gap = max(lamp.level + dot(x, sub(w, lamp.shape.center)), zero) / (r + radius)
+    u = s * like(s, TICK) + like(s, 0.5)
     inverse = one / r
-    height = max((r - lamp.shape.radius) * inverse, zero)
-    down = (s * like(s, TICK) + like(s, 0.5)) * height
-    side = math.sqrt(max(down * (like(s, 2) - down), zero))
+    height = gap * inverse
+    down = u * height
+    side = radius * math.sqrt(max(down * (like(s, 2) - down), zero))
     axis = scaled(inverse, w)
     e1, e2 = tangents(axis)
     sine, cosine = turn(t)
-    n = along(along(scaled(one - down, axis), side * cosine, e1), side * sine, e2)
-    d = sub(along(lamp.shape.center, lamp.shape.radius, n), x)
-    r2 = dot(d, d)
-    cap = like(s, 2 * np.pi) * lamp.shape.radius * lamp.shape.radius * height
-    return cap * max(d[2], zero) * max(-dot(d, n), zero) / (r2 * r2), d
+    d = along(along(scaled(-(radius * down + gap), axis), side * cosine, e1), side * sine, e2)
+    per = one / max(dot(d, d), like(s, LEAST))
+    cap = like(s, 2 * np.pi) * radius * radius * height
+    return cap * (max(d[2], zero) * per) * (gap * max(one - u, zero) * per), d
 
 
 def _arriving_point(lamp, x, s, t):

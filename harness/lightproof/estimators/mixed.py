@@ -15,7 +15,7 @@ from numba.extending import overload
 from lightproof.estimators import shapes
 from lightproof.estimators.aims import INLINED, Aim, counted
 from lightproof.estimators.fans import COINCIDES
-from lightproof.estimators.lamps import Lamp, arriving, parameters
+from lightproof.estimators.lamps import Facing, arriving, level_of, parameters
 from lightproof.estimators.meeting import GRAZING, around, covers, meet
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import Sphere
@@ -95,7 +95,7 @@ def _of_flat(shape, height, d):
 
 
 def sphere_by_area(shape, level, x, s, t):
-    return arriving(Lamp(shape, 1.0), x, s, t)
+    return arriving(Facing(shape, 1.0, level_of(shape, shape.center)), x, s, t)
 
 
 def sphere_by_cosine(shape, level, x, w):

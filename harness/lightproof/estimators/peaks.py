@@ -1,5 +1,6 @@
-"""The largest value that one sample of a light's area can have, L A cos(theta_x) cos(theta_y) / d^2: it grows without bound as
-a receiver comes close to the light. Bounds from the geometry alone, for elements with and without extent.
+"""The largest value that one sample of a light can have. Of its area, L A cos(theta_x) cos(theta_y) / d^2: it grows without
+bound as a receiver comes close. Of directions into it, twice its solid angle at most. Bounds from the geometry alone, for
+elements with and without extent.
 
 `rows` (n, 15) are elements as `elements` has them.
 """
@@ -11,9 +12,11 @@ from functools import singledispatch
 
 import numpy as np
 
+from lightproof.estimators.aims import Aim
 from lightproof.estimators.elements import CELL, CENTER, NORMAL
 from lightproof.estimators.lamps import Beam, Lamp, Point
-from lightproof.estimators.shapes import Disk, Flat, Sphere, Triangle, support
+from lightproof.estimators.parallel import Level
+from lightproof.estimators.shapes import Disk, Flat, Sphere, Triangle, area, support
 from lightproof.estimators.views import COVERS, View
 
 Bounds = Sequence[np.ndarray | None]
@@ -29,21 +32,29 @@ def largest(bounds: Bounds, shares: Sequence[float]) -> np.ndarray | None:
 
 def peak(view: View, source: object) -> np.ndarray | None:
     """Bound (n,) on one sample of a source, per element [unit of the film]: infinite where an element touches the light, None
-    where the source is no light's area, and where a camera's perspective stretches the elements."""
-    if view.slopes is not None or not isinstance(source, Lamp | Point | Beam):
+    where the source is no light that is aimed at, and where a camera's perspective stretches the elements."""
+    if view.slopes is not None or not isinstance(source, Lamp | Level | Aim | Point | Beam):
         return None
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         values = of_source(source, view.receivers)
     return view.factor * source.strength * np.where(np.isnan(values), 0, values)  # 0/0: it touches what it does not see
 
 
-def of_source(source: Lamp | Point | Beam, rows: np.ndarray) -> np.ndarray:
+def of_source(source: Lamp | Level | Aim | Point | Beam, rows: np.ndarray) -> np.ndarray:
     """The bound for a `strength` of 1."""
+    if isinstance(source, Aim):
+        return of_angle(source.shape, rows)
     if isinstance(source, Beam):
         return np.ones(len(rows))
     if isinstance(source, Point):
         return nearest(np.linalg.norm(rows[:, CENTER] - source.position, axis=1), rows) ** -2.0
     return of_shape(source.shape, rows)
+
+
+def of_angle(shape: Flat | Sphere, rows: np.ndarray) -> np.ndarray:
+    """Twice the solid angle, half a sphere at most, with the receiver's cosine: no domain draws less densely."""
+    whole = of_shape(shape, rows) * (1 if isinstance(shape, Sphere) else area(shape))
+    return 2 * np.minimum(whole, 2 * np.pi)
 
 
 @singledispatch
