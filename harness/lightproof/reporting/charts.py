@@ -65,9 +65,9 @@ def log_scale(values: pd.Series) -> alt.Scale:
     return alt.Scale(type="log", domain=[_powers(values)[0], _powers(values)[-1]], nice=False)
 
 
-def decades(values: pd.Series, label: str = "format(datum.value, '~r')") -> alt.Axis:
+def decades(values: pd.Series, label: str = "format(datum.value, '~r')", **others: Any) -> alt.Axis:
     """An axis with a tick at each power of ten."""
-    return alt.Axis(values=_powers(values), labelExpr=label, labelOverlap=True)
+    return alt.Axis(values=_powers(values), labelExpr=label, labelOverlap=True, **others)
 
 
 def finished(chart: alt.Chart | alt.LayerChart, height: int) -> dict[str, Any]:
@@ -80,7 +80,7 @@ def finished(chart: alt.Chart | alt.LayerChart, height: int) -> dict[str, Any]:
                  "labelFontSize": 11, "titleFontSize": 12, "titleFontWeight": "normal", "titlePadding": 8},
         "legend": {**ink, "labelFontSize": 12, "labelLimit": 260, "symbolSize": 80, "symbolOpacity": 1,
                    "titleFontWeight": "normal", "titleOrient": "left",
-                   "layout": {"bottom": {"direction": "vertical", "anchor": "start"}}},
+                   "layout": {side: {"direction": "vertical", "anchor": "start"} for side in ("bottom", "top")}},
         "view": {"stroke": None},
     }
     return {**chart.properties(width="container", height=height).to_dict(), "config": config}

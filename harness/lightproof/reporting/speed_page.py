@@ -70,7 +70,7 @@ class SpeedView:
     def charts(self) -> dict[str, dict[str, Any]]:
         """The charts by row that there is something for, by title."""
         drawn = {
-            "Time to an error": row_charts.time_to_errors(self.rows),
+            row_charts.time_title(): row_charts.time_to_errors(self.rows),
             "Efficiency": row_charts.efficiency(self.rows),
             "Slope": row_charts.slopes(self.slopes, self.rows),
         }
