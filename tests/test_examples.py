@@ -129,6 +129,15 @@ def test_the_doctor_of_what_does_not_start(tmp_path, capsys):
     assert f"FAIL  version: there is no executable ./area_light in {tmp_path}: build it there" in out
 
 
+def test_the_doctor_repeats_what_a_program_says_as_it_fails(tmp_path, capsys):
+    """A program that cannot find what it needs: its own words."""
+    complain = '["sh", "-c", "echo rtrace: not found >&2; exit 127"]'
+    (tmp_path / "lost.toml").write_text(f'name = "lost"\ncommand = {complain}\nversion = {complain}\n')
+    status, out = doctor(tmp_path / "lost.toml", capsys)
+    assert status == 3
+    assert "it exited with status 127 before it answered; it last wrote: rtrace: not found" in out
+
+
 def _described(folder: Path, fault: str, more: str = "") -> Path:
     words = ["python3", str(RENDERER)]
     commands = f"command = {[*words, 'lasting', fault]}\nversion = {[*words, '--version']}"

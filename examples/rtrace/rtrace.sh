@@ -1,6 +1,7 @@
 #!/bin/sh
 # Radiance's rtrace as a renderer for Lightproof: `rtrace.sh JOB.json`, once for each job (see ../README.md).
-# It needs jq and awk, and oconv and rtrace on the PATH: `pip install pyradiance` brings them, in its folder bin.
+# It needs jq and awk, and oconv and rtrace on the PATH: those that `pip install pyradiance` brings are found with
+# PATH="$(python -c 'import pyradiance; print(*pyradiance.__path__)')/bin:$PATH"
 #
 # Irradiance of rectangular lights past polygonal blockers, over the cells of a plane and at points. rtrace takes no seed, so
 # nothing in it is left to chance: a light is up to 8 x 8 lights at fixed places, which costs about a part in a thousand. The

@@ -128,7 +128,8 @@ class Pool:
             return Result(trial, Status.UNSUPPORTED, threads=self.threads, message=str(reason))
         except (MethodFailed, FilmError, OSError) as error:
             self._prepared.pop(entry.name, None)
-            return self._failed(trial, f"{plain(str(error))}{self._last_words(entry)}")
+            told = isinstance(error, MethodFailed)
+            return self._failed(trial, str(error) if told else f"{plain(str(error))}{self._last_words(entry)}")
         finally:
             film.with_suffix(films.PARTIAL).unlink(missing_ok=True)
             self._thin_out(entry)
@@ -179,7 +180,7 @@ class Pool:
             self._discard(entry.worker)
             raise type(error)(f"while {DOING[op]}: {error}") from None
         if "error" in answer:
-            raise MethodFailed(f"while {DOING[op]}: {plain(answer['error'])}")
+            raise MethodFailed(f"while {DOING[op]}: {plain(answer['error'])}{self._workers[entry.worker].last_words()}")
         return answer
 
     def _last_words(self, entry: Entry) -> str:
