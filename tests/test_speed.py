@@ -8,7 +8,7 @@ import pytest
 import small_run
 
 from lightproof.estimators.rates import GRIDS, POINTS, Rate
-from lightproof.reporting import choice, front, theory
+from lightproof.reporting import choice, front, theory, wording
 from lightproof.reporting.evaluation import Cell, evaluate
 from lightproof.reporting.front import Place
 from lightproof.reporting.theory import Slope
@@ -85,6 +85,11 @@ def test_a_run_in_a_sentence(made):
     assert choice.overall(chosen) == (
         "To 1 %: fastest of all are mc-area on 2, path on 1 of 3 scenes. Ours that sample are 10 to 40 times as fast as the"
         " fastest external renderer, on the 2 scenes where that is known or bounded from below.")
+
+
+@pytest.mark.parametrize(("value", "said"), [(0.826, "0.83"), (4.19, "4.2"), (99.6, "100"), (1337, "1,340")])
+def test_how_many_times(value, said):
+    assert wording.multiple(value) == said
 
 
 def test_the_front_is_what_no_film_beats():
