@@ -63,13 +63,13 @@ def companion(path: Path, name: str) -> Path:
     return path.with_name(f"{path.name.replace('.', '-')}-{name}")
 
 
-def remarks(scene: Scene, path: Path) -> list[str]:
-    """For a comment in the main file `path`: what a picture holds, and the command that judges it (of a scene that is not
-    Lightproof's own it names the file)."""
+def remarks(scene: Scene, path: Path, picture: str = "") -> list[str]:
+    """For a comment in the main file `path`: what a picture holds, and the command that judges the `picture`, by default of the
+    main file's name (of a scene that is not Lightproof's own it names the file)."""
     seen = view(scene)
     columns, rows = seen.resolution
     name = scene.name if _is_known(scene) else scene.name.replace(scene.id, f"{scene.id}.toml", 1)
-    judge = f"lightproof grade {path.stem}.exr --scene {name}"
+    judge = f"lightproof grade {picture or f'{path.stem}.exr'} --scene {name}"
     lines = [
         f"Lightproof scene {scene.name}: {scene.title}. Metres, z up.",
         f"Picture: {columns} x {rows} pixels, box filter; each the mean radiance [W/(m2 sr)] over its square, row 0 on top.",

@@ -21,8 +21,9 @@ UNAVAILABLE, UNSUPPORTED = 3, 4  # exit statuses of the child; its last line say
 
 def write(scene: Scene, path: Path) -> None:
     """See `exporting.Tool`. Raises Unavailable without bpy."""
-    render = f"Render: blender -b {path.name} -o //{path.stem}- -f 1, which writes {path.stem}-0001.exr."
-    head = [*exporting.remarks(scene, path), render]
+    picture = f"{path.stem}-0001.exr"
+    render = f"Render: blender -b {path.name} -o //{path.stem}- -f 1, which writes {picture}."
+    head = [*exporting.remarks(scene, path, picture), render]
     job = {"id": scene.id, "case": scene.case, "table": scene.to_table(), "head": head, "path": str(path.resolve())}
     command = [sys.executable, "-m", "lightproof.exporting.blender"]
     try:
