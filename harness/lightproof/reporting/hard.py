@@ -229,8 +229,9 @@ class Group:
 
 
 def rows(evaluation: Evaluation) -> list[Row]:
-    """Every hard case of a run."""
-    hard = [scene for scene in evaluation.scenes if TAG in scene.tags]
+    """Every hard case that a run has begun."""
+    begun = {cell.scene.name for cell in evaluation.cells}
+    hard = [scene for scene in evaluation.scenes if TAG in scene.tags and scene.name in begun]
     return [Row(scene, tuple(Square(method, evaluation.cell(scene, method)) for method in evaluation.methods)) for scene in hard]
 
 
