@@ -40,9 +40,8 @@ def multiplied(lamp, x, s, t):
     a, b = parameters(lamp.shape, s, t)
     center, u, v = lamp.shape.center, lamp.shape.u, lamp.shape.v
     d0, d1 = center[0] + a * u[0] + b * v[0] - x[0], center[1] + a * u[1] + b * v[1] - x[1]
-    h2 = center[2] * center[2]
-    r2 = d0 * d0 + d1 * d1 + h2
-    return h2 * (r2 * r2)
+    share = center[2] * (d0 * d0 + d1 * d1 + center[2] * center[2])
+    return share * share
 
 
 @inline

@@ -70,9 +70,8 @@ def arriving_level(lamp, x, s, t):
     a, b = parameters(lamp.shape, s, t)
     center, u, v = lamp.shape.center, lamp.shape.u, lamp.shape.v
     d = center[0] + a * u[0] + b * v[0] - x[0], center[1] + a * u[1] + b * v[1] - x[1], center[2]
-    h2 = d[2] * d[2]
-    r2 = d[0] * d[0] + d[1] * d[1] + h2
-    return h2 / (r2 * r2), d
+    share = d[2] / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+    return share * share, d
 
 
 @overload(placed)
