@@ -45,7 +45,7 @@ def measure(track: Track, add: Add, rounds: int, quick: bool, everything: bool =
             track.tell(str(error))
             continue
         track.tell(f"{NAME}: {scene.name}")
-        race(track, scene, unit_of(scene, reference), add, rounds)
+        race(track, scene, unit_of(scene, reference), ours(float64=everything), add, rounds)
 
 
 def is_asked(scene: Scene, everything: bool) -> bool:
@@ -53,9 +53,9 @@ def is_asked(scene: Scene, everything: bool) -> bool:
     return bool(set(scene.tags) & set(TAGS)) and (everything or ("quick" in scene.tags and scene.case == BASE))
 
 
-def race(track: Track, scene: Scene, scale: Scale, add: Add, rounds: int) -> None:
-    """Every method's ladder, then all their films in turn."""
-    climbs = [climb(track, scene, scale, entry, OURS_SHARE * track.seconds) for entry in track.there(ours())]
+def race(track: Track, scene: Scene, scale: Scale, own: Sequence[Entry], add: Add, rounds: int) -> None:
+    """Every method's ladder, `own` and the best of each renderer's, then all their films in turn."""
+    climbs = [climb(track, scene, scale, entry, OURS_SHARE * track.seconds) for entry in track.there(own)]
     climbs += [climb(track, scene, scale, entry, track.seconds) for entry in best(track, scene, scale, add)]
     taken: dict[Film, list[Result]] = {}
     for films, results in climbs:

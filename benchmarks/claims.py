@@ -124,7 +124,8 @@ def growth(rows: Sequence[Row]) -> list[Claim]:
     blockers = [row.value for row in rows if row.method == "mc-area" and row.parameter == "blockers" and row.each]
     found = [Claim(f"memory of mc-area, {memory[1].value:.0f} samples over {memory[0].value:.0f}", memory[0].scene,
                    ratio(memory[1].each, memory[0].each), 1.05, MOST)] if memory else []
-    return [*found, Claim("blockers that mc-area works with", "many-blockers", Estimate(max(blockers, default=math.nan)), 100.0)]
+    most = Estimate(max(blockers, default=math.nan))
+    return [*found, Claim("blockers that mc-area works with", "many-blockers", most, 100.0)]
 
 
 def ends(rows: Sequence[Row]) -> tuple[Row, Row] | None:

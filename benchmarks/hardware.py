@@ -66,7 +66,8 @@ def assembly() -> str:
 def counted(found: Operations | None) -> list[Row]:
     """What a sample does, and whether the peak is one of packed multiply-adds."""
     peak = operations.packed_multiply_adds(multiply_adds.assembly())
-    rows = [_count(PEAK, "packed multiply-adds in the loop", peak), _count(METHOD, "floating-point, by hand", operations.BY_HAND)]
+    rows = [_count(PEAK, "packed multiply-adds in the loop", peak),
+            _count(METHOD, "floating-point, by hand", operations.BY_HAND)]
     if found is None:
         return [*rows, Row(NAME, SCENE, METHOD, "", 0, "operations", "", note="the count knows only x86 with AVX2 or AVX-512")]
     return [*rows, *(_count(METHOD, name, number) for name, number in {

@@ -1,12 +1,16 @@
-"""The fastest direct light that Mitsuba can be made to give: no camera, no film, no integrator, only its own emitter sampling.
+"""Direct light as fast as Mitsuba can be made to give it, in two ways.
 
-Points of the film's plane ask the scene for a light sample, with the shadow ray, `scene.sample_emitter_direction`. All samples of
-a lane run in one compiled loop that keeps its sum in a register, so that nothing is written to memory but a sum a lane.
+`Loop` has no camera, no film and no integrator, only Mitsuba's own emitter sampling: points of the film's plane ask the
+scene for a light sample, with the shadow ray, `scene.sample_emitter_direction`. All samples of a lane run in one compiled
+loop that keeps its sum in a register, so that nothing is written to memory but a sum a lane. `Bundle` is Mitsuba's direct
+integrator with many light samples for each of its camera's: they cost less each, and are worth less, because they share a
+point of the film.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +21,7 @@ from lightproof.scene import PlaneFilm, Scene
 
 LANES = 2**18  # that work side by side, about: enough to fill every core's vector registers many times
 MOST = 64  # lanes of one element
+BUNDLE = 16  # light samples of a camera sample
 
 
 class Loop(Mitsuba):
@@ -67,3 +72,18 @@ class Loop(Mitsuba):
         draw = mi.Point2f(random.next_float32(), random.next_float32())
         found, weight = self.scenes[0].sample_emitter_direction(place, draw, True)
         return weight[0] * self.dr.maximum(self.dr.dot(found.d, place.n), 0)
+
+
+class Bundle(Mitsuba):
+    """Light of one reflection at most; each light sample counts as one."""
+
+    def unsupported(self, scene: Scene) -> str | None:
+        return "bundles are of direct light" if scene.reflects else super().unsupported(scene)
+
+    def _view(self, view: Any) -> dict[str, Any]:
+        self.integrator = {"type": "direct", "emitter_samples": BUNDLE, "bsdf_samples": 0}
+        return super()._view(view)
+
+    def render(self, samples: int, seed: int) -> Rendering:
+        rendering = super().render(-(-samples // BUNDLE), seed)
+        return replace(rendering, samples=BUNDLE * rendering.samples)

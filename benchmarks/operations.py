@@ -16,9 +16,9 @@ INSTRUCTION = re.compile(r"\t(v\w+)\s")
 LABEL = re.compile(r"^(\.L\w+):")
 JUMP = re.compile(r"\tj\w+\s+(\.L\w+)")
 BY_HAND = 24
-"""Floating-point operations of one unoccluded `mc-area` sample under a flat light parallel to the film, read off the source, a
-multiply-add as two: 4 for the point of the element, 8 for that of the light, 2 for the vector between (its z is known), 4 for its
-square, 1 for the square of that, 1 division, 1 for the pivot, 3 to add up the value and its square."""
+"""Floating-point operations of one unoccluded `mc-area` sample under a flat light parallel to the film, read off the
+source, a multiply-add as two: 4 for the point of the element, 8 for that of the light, 2 for the vector between (its z is
+known), 4 for its square, 1 for the square of that, 1 division, 1 for the pivot, 3 to add up the value and its square."""
 
 
 @dataclass(frozen=True)

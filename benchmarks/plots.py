@@ -17,6 +17,7 @@ from rows import Row
 
 FLOOR = 1e-7  # of the tolerance scale; smaller errors are drawn here
 STEPS = 40  # points of a fitted curve
+FILM = "render time of one film"
 COUNT = "format(datum.value, '~s')"
 
 
@@ -27,8 +28,9 @@ def rates(rows: Sequence[Row]) -> dict[str, Any]:
                           "samples/s": count(row.median)} for row in ranked])
     y = alt.Y("method:N", title=None, sort=[row.method for row in ranked], axis=alt.Axis(labelLimit=260, grid=True))
     x = alt.X("rate:Q", title="samples per second", scale=log_scale(data.rate), axis=decades(data.rate, COUNT))
-    points = alt.Chart(data).mark_point(filled=True, size=60, color=COLOURS[0]).encode(x=x, y=y, tooltip=["method", "samples/s"])
-    spread = alt.Chart(data).mark_rule(color=COLOURS[0]).encode(x="low:Q", x2="high:Q", y=y)
+    base = alt.Chart(data)
+    points = base.mark_point(filled=True, size=60, color=COLOURS[0]).encode(x=x, y=y, tooltip=["method", "samples/s"])
+    spread = base.mark_rule(color=COLOURS[0]).encode(x="low:Q", x2="high:Q", y=y)
     return finished(spread + points, height=ROW * len(ranked))
 
 
@@ -38,7 +40,7 @@ def races(climbed: Sequence[Ladder], methods: Sequence[str]) -> dict[str, Any]:
     look = [(one.method, methods.index(one.method)) for one in climbed]
     chosen = alt.selection_point(fields=["method"], bind="legend")
     lines = alt.Chart(data).mark_line(point={"size": 40, "filled": True}, strokeWidth=1.5).encode(
-        x=alt.X("seconds:Q", title="render time of one film", scale=log_scale(data.seconds), axis=decades(data.seconds, SECONDS)),
+        x=alt.X("seconds:Q", title=FILM, scale=log_scale(data.seconds), axis=decades(data.seconds, SECONDS)),
         y=alt.Y("error:Q", title="rms error [%]", scale=log_scale(data.error), axis=decades(data.error)),
         color=alt.Color("method:N", scale=looks(look, COLOURS), legend=LEGEND),
         shape=alt.Shape("method:N", scale=looks(look, SHAPES), legend=LEGEND),
@@ -60,11 +62,11 @@ def curves(rows: Sequence[Row], powers: dict[str, Power], methods: Sequence[str]
     parameter = rows[0].parameter
     data = pd.DataFrame([{"method": row.method, "amount": row.value, "seconds": row.median, "time": seconds(row.median)}
                          for row in rows])
-    lines = pd.DataFrame([line for method, power in powers.items() for line in _line(method, power, data[data.method == method])])
+    lines = pd.concat(_line(method, power, data[data.method == method]) for method, power in powers.items())
     look = [(method, methods.index(method)) for method in data.method.unique()]
     colour = alt.Color("method:N", scale=looks(look, COLOURS), legend=LEGEND)
     x = alt.X("amount:Q", title=parameter, scale=log_scale(data.amount), axis=decades(data.amount, COUNT))
-    y = alt.Y("seconds:Q", title="render time of one film", scale=log_scale(data.seconds), axis=decades(data.seconds, SECONDS))
+    y = alt.Y("seconds:Q", title=FILM, scale=log_scale(data.seconds), axis=decades(data.seconds, SECONDS))
     points = alt.Chart(data).mark_point(filled=True, size=50, clip=True).encode(
         x=x, y=y, color=colour, shape=alt.Shape("method:N", scale=looks(look, SHAPES), legend=LEGEND),
         tooltip=["method", "amount:Q", "time"])
@@ -72,6 +74,6 @@ def curves(rows: Sequence[Row], powers: dict[str, Power], methods: Sequence[str]
     return finished(fit + points, height=300)
 
 
-def _line(method: str, power: Power, data: pd.DataFrame) -> list[dict[str, Any]]:
+def _line(method: str, power: Power, data: pd.DataFrame) -> pd.DataFrame:
     amounts = np.geomspace(data.amount.min(), data.amount.max(), STEPS)
-    return [{"method": method, "amount": amount, "seconds": time} for amount, time in zip(amounts, power(amounts), strict=True)]
+    return pd.DataFrame({"method": method, "amount": amounts, "seconds": power(amounts)})

@@ -17,6 +17,7 @@ from rows import Row
 
 SHORTEST_TIMEOUT = 60.0
 SLOWER_THAN_EXPECTED = 20
+NAIVE = "textbook"  # formulas as they are not to be used
 FAILURES = (Unavailable, MethodFailed, WorkerDied)
 
 
@@ -83,8 +84,9 @@ class Track:
 
 
 def ours(float64: bool = False) -> list[Entry]:
-    """The in-house methods, those in float64 as well or not."""
-    return [entry for entry in METHODS.values() if entry.worker == OURS and (float64 or not entry.name.endswith("float64"))]
+    """The in-house methods but the naive one, those in float64 as well or not."""
+    kept = [entry for entry in METHODS.values() if entry.worker == OURS and family(entry.name) != NAIVE]
+    return [entry for entry in kept if float64 or not entry.name.endswith("float64")]
 
 
 def renderers() -> dict[str, list[Entry]]:

@@ -15,7 +15,7 @@ SEED = 1
 
 def over_rounds(rounds: int, statistic: Callable[[np.ndarray], float]) -> Estimate:
     """A statistic of the rounds with these indices, over all of them once, and its interval over rounds drawn anew (the
-    percentile bootstrap, Efron 1982). What was measured in one round stays together: what slowed it down cancels from ratios."""
+    percentile bootstrap, Efron 1982). What was measured in one round stays together, so that slow rounds cancel."""
     every = np.arange(rounds)
     value = float(statistic(every))
     if rounds < 2 or not np.isfinite(value):

@@ -27,9 +27,9 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Row:
-    """One quantity, measured once a round: `each` in the order of the rounds, in `unit`. `parameter` is what was varied (samples,
-    elements, threads) and `value` what it was; `phase` what was measured: setup, compile, render, error, memory. What was
-    computed from other rows is an `estimate` instead. A row with neither says why in `note`."""
+    """One quantity, measured once a round: `each` in the order of the rounds, in `unit`. `parameter` is what was varied
+    (samples, elements, threads) and `value` what it was; `phase` what was measured: setup, compile, render, error, memory.
+    What was computed from other rows is an `estimate` instead. A row with neither says why in `note`."""
 
     bench: str
     scene: str
@@ -51,7 +51,7 @@ class Row:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Two order statistics that hold the median with a chance of at least `LEVEL`, from six rounds on; of fewer the range."""
+        """Two order statistics that hold the median with a chance of at least `LEVEL`; of fewer than six rounds the range."""
         if not self.each:
             return (self.estimate.low, self.estimate.high) if self.estimate else (np.nan, np.nan)
         ordered = sorted(self.each)

@@ -88,7 +88,8 @@ def hardware(rows: Sequence[Row]) -> list[Part]:
     peak = [row for row in rows if row.unit == "operations/s" and row.each]
     whole = next((row.median for row in rates if row.method == WHOLE), math.nan)
     body = [[row.method, f"{wording.number(1e12 / row.median)} ps", wording.percent(whole / row.median)] for row in rates]
-    made = [[row.method, row.parameter, wording.number(row.median)] for row in rows if row.phase == "operations" and not row.note]
+    counted = [row for row in rows if row.phase == "operations" and not row.note]
+    made = [[row.method, row.parameter, wording.number(row.median)] for row in counted]
     made += [[row.method, "floating-point operations per second", wording.count(row.median)] for row in peak]
     loop = Part("Parts of the loop left out", plots.rates(rates) if rates else None,
                 ("", "a sample takes", "of the whole loop's time"), body)

@@ -21,7 +21,9 @@ NAME = "throughput"
 SCENES = ("square-light", "occluded-square")
 RESOLUTION = (128, 96)
 MANY, FEW = 2048, 64  # samples per element: of what is compared with Mitsuba, and with the slower renderers
-LOOP = Entry("mitsuba-loop", f"{Path(__file__).parent / 'mitsuba_loop.py'}:Loop", worker="mitsuba-loop", extra="mitsuba")
+BY_HAND = Path(__file__).parent / "mitsuba_loop.py"
+LOOP = Entry("mitsuba-loop", f"{BY_HAND}:Loop", worker="mitsuba-loop", extra="mitsuba")
+BUNDLE = Entry("mitsuba-bundle", f"{BY_HAND}:Bundle", worker="mitsuba-loop", extra="mitsuba")
 CHOOSING = 3  # rounds that choose Mitsuba's configuration, at half the samples
 
 
@@ -32,7 +34,7 @@ def measure(track: Track, add: Callable[[Iterable[Row]], None], rounds: int, qui
         scene = suite.default().scene(name)
         scene = replace(scene, film=replace(scene.film, resolution=resolution))
         slower = [entry for family, entries in renderers().items() if family != "mitsuba" for entry in entries[:1]]
-        race(track, scene, [*ours(), LOOP, *fastest(track, scene, many, add)], many, rounds, add)
+        race(track, scene, [*ours(), LOOP, BUNDLE, *fastest(track, scene, many, add)], many, rounds, add)
         race(track, scene, [METHODS["mc-area"], METHODS["mitsuba"], *slower], FEW, rounds, add)
 
 

@@ -1,4 +1,4 @@
-"""The inner loop of `mc-area` under a flat light parallel to the film with parts of it left out, to see what each part costs."""
+"""The inner loop of `mc-area` under a flat light parallel to the film with parts left out, to see what each part costs."""
 
 from __future__ import annotations
 

@@ -113,7 +113,8 @@ def test_operations_are_counted_in_the_loop_alone():
 
 
 def test_rows_come_back_from_the_csv(tmp_path):
-    rows = [rate("mc-area", 3, 1, 2), Row("growth", "a, b", "m", "error", 0.1, "render", "s", estimate=Estimate(1, 0.5, np.inf)),
+    rows = [rate("mc-area", 3, 1, 2),
+            Row("growth", "a, b", "m", "error", 0.1, "render", "s", estimate=Estimate(1, 0.5, np.inf)),
             Row("growth", "s", "m", "lights", 3, "error", "", note="it broke")]
     with Table(tmp_path / "new" / "benchmarks.csv") as table:
         table.add(rows)
@@ -133,6 +134,10 @@ def test_grown_scenes_hold_what_they_say(points):
     assert ((gaps > sides).any(axis=-1) | np.eye(100, dtype=bool)).all()
 
 
+def scale(scene):
+    return ladder.scale(scene, suite.default().reference(scene))
+
+
 @pytest.fixture
 def track(tmp_path, monkeypatch):
     """As many seconds as it takes, for a ladder of 1 to 256 samples."""
@@ -144,10 +149,9 @@ def track(tmp_path, monkeypatch):
 def test_page_from_a_tiny_measurement(track, monkeypatch):
     """Two of ours on a point light, one of them in a renderer's place: errors fall, and the page has what was measured."""
     stranger = METHODS["mc-area/jitter"]
-    monkeypatch.setattr(accuracy, "ours", lambda: [METHODS["mc-area"]])
     monkeypatch.setattr(accuracy, "renderers", lambda: {"stranger": [stranger]})
     scene, rows = suite.default().scene("point-light"), []
-    accuracy.race(track, scene, ladder.scale(scene, suite.default().reference(scene)), rows.extend, rounds=2)
+    accuracy.race(track, scene, scale(scene), [METHODS["mc-area"]], rows.extend, rounds=2)
     assert {row.method for row in rows} == {"mc-area", "mc-area/jitter"}
     errors = [row.median for row in rows if row.phase == "error" and row.method == "mc-area"]
     assert len(errors) == 5 and errors[0] > 4 * errors[-1] > 0
@@ -166,11 +170,10 @@ def test_what_was_measured_survives_an_interruption(track, monkeypatch):
         return render(film, turn)
 
     monkeypatch.setattr(track, "render", interrupted)
-    monkeypatch.setattr(accuracy, "ours", lambda: [METHODS["mc-area"]])
     monkeypatch.setattr(accuracy, "renderers", dict)
     scene, rows = suite.default().scene("point-light"), []
     with pytest.raises(KeyboardInterrupt):
-        accuracy.race(track, scene, ladder.scale(scene, suite.default().reference(scene)), rows.extend, rounds=2)
+        accuracy.race(track, scene, scale(scene), [METHODS["mc-area"]], rows.extend, rounds=2)
     assert [row.value for row in rows if row.phase == "error" and row.each] == [1]
 
 
@@ -179,10 +182,11 @@ def test_a_missing_renderer_is_told_and_left_out(track):
     assert track.there([broken, METHODS["mc-area"]]) == [METHODS["mc-area"]] and "broken" in track.left_out
 
 
-def test_the_hand_written_loop_gives_the_right_light(track):
-    """Mitsuba's emitter sampling on the floor below a square light, 4,096 samples per element: the mean to 0.2 %."""
+@pytest.mark.parametrize("entry", [throughput.LOOP, throughput.BUNDLE], ids=lambda entry: entry.name)
+def test_mitsuba_by_hand_gives_the_right_light(track, entry):
+    """The floor in a soft shadow, 4,096 light samples per element: the mean to 0.2 %."""
     pytest.importorskip("mitsuba")
     scene = suite.default().scene("occluded-square")
-    result = track.render(Film(throughput.LOOP, scene, 4096), 1)
-    assert result.message == ""
+    result = track.render(Film(entry, scene, 4096), 1)
+    assert (result.message, result.samples) == ("", 4096)
     assert result.film.mean() == pytest.approx(suite.default().reference(scene).value.mean(), rel=2e-3)
