@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from lightproof.estimators.compiled import strict
-from lightproof.estimators.rng import uniform
 from lightproof.estimators.tracing import free, front_normal, vector
 from lightproof.estimators.vectors import along, dot, norm, scaled, sub, tangents
 from lightproof.estimators.world import (
@@ -20,7 +19,6 @@ from lightproof.estimators.world import (
     POINT,
     RADIANCE,
     RADIUS,
-    SAMPLED,
     SIDE,
     SPHERE,
     U,
@@ -97,14 +95,4 @@ def from_bulbs(items, bulbs, x, n, contact):
     total = 0.0
     for k in range(len(bulbs)):
         total += from_bulb(items, bulbs[k], x, n, contact)
-    return total
-
-
-@strict
-def direct(items, bulbs, x, n, key, contact):
-    """Estimate of the irradiance from every light, one point of each drawn at random [W/m2]."""
-    total = from_bulbs(items, bulbs, x, n, contact)
-    for k in range(len(items)):
-        if items[k, SAMPLED] != 0:
-            total += from_item(items, k, x, n, uniform(key, 2 * k), uniform(key, 2 * k + 1), contact)
     return total

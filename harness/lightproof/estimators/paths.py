@@ -3,81 +3,139 @@ directions drawn in proportion to the cosine. A path ends by roulette that keeps
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numba import types
+from numba.extending import overload
 
-from lightproof.estimators.compiled import strict, strict_kernel
-from lightproof.estimators.directions import cosine_power, oriented
-from lightproof.estimators.lighting import direct
-from lightproof.estimators.rng import mix64, stream, uniform
-from lightproof.estimators.tracing import front_normal, nearest, receive, sky_radiance
-from lightproof.estimators.vectors import along, dot
-from lightproof.estimators.world import LAMP, RADIANCE, RECEIVER, REFLECTANCE, SAMPLED, World, build
+from lightproof.estimators import batch
+from lightproof.estimators.aiming import from_bulbs, illuminate
+from lightproof.estimators.batch import keep, settle
+from lightproof.estimators.compiled import strict_kernel
+from lightproof.estimators.recursion import Even, Zoned, reflect
+from lightproof.estimators.rng import block_keys, mix64, stream
+from lightproof.estimators.rounds import gather_sky, land, play, scatter
+from lightproof.estimators.scenery import Scenery, scenery
+from lightproof.estimators.solids import find
+from lightproof.estimators.starts import CAMERAS, FILMS, Receivers, Within, begin, sum_up
+from lightproof.estimators.world import LAMP, RADIANCE, SAMPLED, World, build
 from lightproof.scene import Scene
 
-FAINT = 0.05  # share of a path's first weight below which roulette plays
-SURVIVAL = 0.95  # the highest chance of going on once it does
+FAINT, FAINTEST = 0.05, 0.0005  # shares of a path's first weight below which roulette plays: mostly; where it is the only noise
+SHORT = 4  # reflections: so few need no roulette
 ENDLESS = 2**31 - 1
+BEFORE, NEXT = 2**33, 2**34  # numbers of streams, beyond all others: of draws before a path begins, of the next vertex
 
 
-@strict
-def arriving(items, skies, bulbs, x, n, bounces, glow, key, contact):
-    """Estimate of the irradiance at x after up to `bounces` reflections [W/m2]."""
-    total, weight = 0.0, 1.0
-    while True:
-        key = mix64(key)
-        total += weight * direct(items, bulbs, x, n, mix64(key ^ np.uint64(1)), contact)
+def look(film, scenery, state, slots, totals, count, key):
+    """Follows the rays of a camera, or directions from receivers, to what they meet; how many paths go on. A film that receives
+    and begins paths is where it is."""
+
+
+@overload(look)
+def _look(film, scenery, state, slots, totals, count, key):
+    if film.instance_class is Receivers:
+        return lambda film, scenery, state, slots, totals, count, key: count
+    return look_around if film.instance_class is Within else look_ahead
+
+
+def look_ahead(film, scenery, state, slots, totals, count, key):
+    find(scenery.solids, scenery.seen, state, count, 0.0)
+    gather_sky(scenery.skies, state, count)
+    return keep(state, slots, totals, count, land(state, count))
+
+
+def look_around(film, scenery, state, slots, totals, count, key):
+    from_bulbs(scenery.bulbs, scenery.blockers, state, count, scenery.near)
+    scatter(state, count, block_keys(key, BEFORE))
+    find(scenery.solids, scenery.met, state, count, scenery.near)
+    return keep(state, slots, totals, count, land(state, count))
+
+
+def follow(recursion, scenery, bounces, glow, faint, state, slots, totals, count, key):
+    """Takes all paths to their ends: vertex by vertex, or where there is a recursion at once."""
+
+
+@overload(follow)
+def _follow(recursion, scenery, bounces, glow, faint, state, slots, totals, count, key):
+    return walk if isinstance(recursion, types.NoneType) else sum_on
+
+
+def sum_on(recursion, scenery, bounces, glow, faint, state, slots, totals, count, key):
+    if bounces >= 0:
+        from_bulbs(scenery.bulbs, scenery.blockers, state, count, scenery.near)
+        reflect(recursion, scenery.bulbs, state, count, key, scenery.near)
+    settle(state, slots, totals, count)
+
+
+def walk(recursion, scenery, bounces, glow, faint, state, slots, totals, count, key):
+    """`glow`: whether there is light that only a direction can meet."""
+    while count > 0 and bounces >= 0:
+        key = mix64(key ^ np.uint64(NEXT))
+        illuminate(scenery.bulbs, scenery.lamps, scenery.blockers, state, count, key, scenery.near)
         if bounces == 0 and not glow:
-            return total
-        w = oriented(cosine_power(1, uniform(key, 0), uniform(key, 1)), n)
-        i, t = nearest(items, x, w, contact)
-        if i < 0:
-            return total + weight * math.pi * sky_radiance(skies, w)
-        x = along(x, t, w)
-        n = front_normal(items[i], x)
-        if dot(n, w) >= 0 or items[i, LAMP] != 0:
-            return total
-        total += weight * math.pi * items[i, RADIANCE]
-        weight *= items[i, REFLECTANCE]
+            break
+        keys = block_keys(key, 0)
+        scatter(state, count, keys)
+        find(scenery.solids, scenery.met, state, count, scenery.near)
+        gather_sky(scenery.skies, state, count)
+        going = land(state, count)
+        if faint > 0:
+            going = play(state, count, keys, faint)
+        count = keep(state, slots, totals, count, going)
         bounces -= 1
-        survival = min(items[i, REFLECTANCE], SURVIVAL) if weight < FAINT else 1.0
-        if bounces < 0 or uniform(key, 2) >= survival:
-            return total
-        weight /= survival
+    settle(state, slots, totals, count)
 
 
 @strict_kernel
-def estimate(items, skies, bulbs, film, elements, contact, first, seed, samples, bounces, glow, out):
-    """Sums of the value and of its square over samples `samples[0]` to `samples[1]` of each of `elements`; `out` (n, 2).
-    Light of up to `bounces` reflections; `glow`: whether there is light that only a direction can meet."""
-    for e in range(len(elements)):
-        total, square = 0.0, 0.0
-        for i in range(samples[0], samples[1]):
-            key = stream(seed, first + e, i)
-            p, q = uniform(key, 0) - 0.5, uniform(key, 1) - 0.5
-            value, factor, x, n = receive(items, skies, film, elements[e], p, q, contact)
-            left = bounces if film == RECEIVER else bounces - 1
-            if factor > 0 and left >= 0:
-                value += factor * arriving(items, skies, bulbs, x, n, left, glow, mix64(key), contact)
-            total += value
-            square += value * value
-        out[e, 0], out[e, 1] = total, square
+def estimate(film, recursion, scenery, bounces, glow, faint, first, samples, seed, out):
+    """Sums of the value and of its square over samples `samples[0]` to `samples[1]` of each element of `film`, of which the
+    first is number `first`; `out` (n, 2). Light of up to `bounces` reflections after a path's first vertex, -1: none at it."""
+    state, totals = np.empty(batch.ROWS * batch.SIZE), np.empty(batch.SIZE)
+    slots = np.empty(batch.SIZE, np.uint32)
+    each = samples[1] - samples[0]
+    key = stream(seed, first, samples[0])
+    for number in range(0, each * len(film.rows), batch.SIZE):
+        count = min(batch.SIZE, each * len(film.rows) - number)
+        own = stream(key, number, 0)
+        begin(film, state, slots, number, count, each, block_keys(own, 0))
+        going = look(film, scenery, state, slots, totals, count, own)
+        follow(recursion, scenery, bounces, glow, faint, state, slots, totals, going, own)
+        sum_up(totals, number, count, each, out)
 
 
 @dataclass(frozen=True)
 class Paths:
-    """A scene as the kernel takes it. `glow`: whether some light is met by directions and not sampled point by point."""
+    """A scene as the kernel takes it. `glow`: whether some light is met by directions and not sampled point by point;
+    `recursion` ends paths on the wall, on which `inside` says that the film does not lie."""
 
     world: World
     bounces: int
     glow: bool
+    recursion: Even | Zoned | None = None
+    inside: bool = False
 
     def add(self, first: int, last: int, samples: tuple[int, int], seed: int, out: np.ndarray) -> None:
         """Sums over samples `samples[0]` to `samples[1]` of elements `first` to `last`, into `out` (last - first, 2)."""
-        items, skies, bulbs, film, elements, contact = self.world.arrays
-        estimate(items, skies, bulbs, film, elements[first:last], contact, first, seed, samples, self.bounces, self.glow, out)
+        kind = Within if self.inside else FILMS[self.world.film]
+        faint = self.faint / np.pi if kind in CAMERAS else self.faint
+        estimate(kind(self.world.elements[first:last]), self.recursion, self.scenery, self.bounces - (kind is not Receivers),
+                 self.glow, faint, first, samples, seed, out)  # fmt: skip
+
+    @cached_property
+    def faint(self) -> float:
+        """Share of a path's first weight below which roulette plays."""
+        if self.bounces <= SHORT:
+            return 0.0
+        aimed = self.scenery.lamps or self.scenery.bulbs or self.scenery.skies
+        alike = not np.ptp(self.scenery.met[1:, 4:], axis=0).any()  # every hit gives the same
+        return FAINTEST if alike and not aimed else FAINT
+
+    @cached_property
+    def scenery(self) -> Scenery:
+        return scenery(self.world)
 
 
 def paths(scene: Scene, aim: bool = True) -> Paths:
