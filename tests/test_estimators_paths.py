@@ -52,7 +52,7 @@ def unbiased(found: np.ndarray, exact: np.ndarray) -> bool:
 
 
 REFLECTING = [
-    *(("sphere-furnace", case) for case in ("base", "brightest", "five-reflections")),
+    *(("sphere-furnace", case) for case in ("base", "five-reflections")),
     *(("two-zone-sphere", case) for case in ("base", "black-floor", "two-reflections")),
     *(("cube-room", case) for case in ("base", "four-reflections")),
     ("concentric-spheres", "irradiance"),
@@ -129,11 +129,11 @@ SKIES = [{"id": "sun", "kind": "environment", "radiance": 30.0, "direction": [0,
          {"id": "sky", "kind": "environment", "sky": "cie-overcast", "zenith_radiance": 1.3}]  # fmt: skip
 
 
-def crowded(copies: int, lights: list, film: dict = AROUND) -> Scene:
-    """All kinds of blockers, `copies` of each beside one another; some glow."""
+def crowded(copies: int, lights: list, kinds: list = KINDS) -> Scene:
+    """Blockers of all `kinds`, `copies` of each beside one another; some glow."""
     surfaces = [{"id": f"s{k}-{i}", "shape": moved(shape, 1.3 * k), "reflectance": 0, "radiance": 0.2 * i}
-                for k in range(copies) for i, shape in enumerate(KINDS)]  # fmt: skip
-    table = {"title": "test", "max_bounces": 0, "tolerance": 0.01, "light": lights, "surface": surfaces, "film": film}
+                for k in range(copies) for i, shape in enumerate(kinds)]  # fmt: skip
+    table = {"title": "test", "max_bounces": 0, "tolerance": 0.01, "light": lights, "surface": surfaces, "film": AROUND}
     return from_table(table, "test")
 
 
@@ -158,11 +158,11 @@ def test_rays_meet_what_the_scalar_tracer_meets():
 
 
 def test_shadows_are_where_directions_find_them():
-    """The same things before four kinds of lamps: next-event estimation and directions alone."""
-    lamps = [QUAD, {"type": "disk", "center": [1, 1, 1.4], "normal": [-0.5, -0.4, -1], "radius": 0.5},
-             {"type": "sphere", "center": [-0.6, 0.7, 1.2], "radius": 0.3},
+    """A quadrilateral and a cap before two round lamps: next-event estimation and directions alone."""
+    lamps = [{"type": "sphere", "center": [-0.6, 0.7, 1.2], "radius": 0.3},
              {"type": "cap", "center": [0.8, -0.6, 1.2], "radius": 0.4, "axis": [-0.3, 0.4, -1], "half_angle": 60}]  # fmt: skip
-    scene = crowded(1, [{"id": f"l{i}", "kind": "area", "shape": shape, "radiance": 2.0 + i} for i, shape in enumerate(lamps)])
+    lights = [{"id": f"l{i}", "kind": "area", "shape": shape, "radiance": 2.0 + i} for i, shape in enumerate(lamps)]
+    scene = crowded(1, lights, kinds=[KINDS[1], KINDS[4]])
     aimed, met = (films(name, scene, 2**14) for name in ("path", "path/no-next-event"))
     error = np.sqrt((aimed.var(axis=0, ddof=1) + met.var(axis=0, ddof=1)) / 16)
     assert (np.abs(aimed.mean(axis=0) - met.mean(axis=0)) < 5 * error).all()
