@@ -23,7 +23,8 @@ class Unavailable(Exception):
 @dataclass(frozen=True)
 class Rendering:
     """One film as a method gives it; see `trial.Result` for the fields. `seconds` may split off the phase compile; what it
-    does not name, the worker counts as render."""
+    does not name, the worker counts as render. `bound` (n,) [unit] is a proof of how far off each value can be: a promise to be
+    held to, not a doubt to be added to the error, which is known where the exact light is."""
 
     film: np.ndarray
     samples: int
@@ -31,6 +32,7 @@ class Rendering:
     quantization: np.ndarray | float = 0.0
     seconds: Mapping[str, float] = field(default_factory=dict)
     peak: np.ndarray | None = None
+    bound: np.ndarray | None = None
 
 
 class Method(ABC):
