@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import numba
-import numpy as np
-import pytest
-from numba import njit
 
-from lightproof import suite
-from lightproof.estimators import compiled, shapes
-from lightproof.estimators.kernel import estimate
-from lightproof.estimators.mc_area import McArea
+from lightproof.estimators import compiled
 
 PROGRAM = """
 from numba.core import event
@@ -89,20 +82,3 @@ def answer(folder: Path) -> str:
 def test_numba_s_own_setting_is_left_alone():
     """Other people's kernels in the same process keep their cache folder."""
     assert str(compiled.CACHE) != numba.config.CACHE_DIR
-
-
-BALLS = tuple(shapes.Sphere((x, 0.1, 0.6), 0.1) for x in (-0.3, 0.0, 0.3))
-
-
-@pytest.mark.parametrize(("name", "method", "blockers"), [("two-blockers", "mc-area/sobol", None),
-                                                          ("tilted-blocker", "mc-area", BALLS)])
-def test_the_loop_over_samples_runs_in_vector_registers(name, method, blockers):
-    """Two flat blockers, and three balls: the quotient of a sample is one of vectors. A call or a branch left in the loop
-    would cost a factor of ten to forty and change no result."""
-    made = McArea(method, 1)
-    made.prepare(suite.default().scene(name))
-    anew = njit(fastmath=compiled.FAST, error_model="numpy")(estimate.py_func)  # what comes from the cache cannot be looked at
-    source, between = made.pieces[0].source, made.pieces[0].blockers if blockers is None else blockers
-    anew(source, between, made.receivers[:1], None, 0, made.points(1, 0), (0, 1), np.float32(1), np.zeros((1, 3)))
-    code = next(iter(anew.inspect_llvm().values()))
-    assert re.search(r"fdiv [a-z ]*<\d+ x float>", code)
