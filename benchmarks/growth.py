@@ -26,7 +26,8 @@ FEW_SAMPLES, MORE_SAMPLES = 64, 1024
 GRID = [16, 12]
 ELEMENTS = ([1, 1], [4, 3], [16, 12], [64, 48], [256, 192], [1000, 1000])
 SAMPLES = tuple(4**power for power in range(3, 12))
-COUNTS = (1, 3, 10, 30, 100, 300, 1000)
+LIGHTS = (1, 3, 10, 30, 100)
+BLOCKERS = (*LIGHTS, 300, 1000)
 LONGEST = 4  # times what a renderer's film may take: a method that would take longer, in proportion, stops
 SIDE = 0.7  # of its place, of a small square
 
@@ -71,10 +72,11 @@ def curve(track: Track, points: list[Point], entries: list[Entry], add: Add, rou
 
 
 def rows(point: Point, film: Film, results: list[Result]) -> list[Row]:
-    """Render time and the worker's largest memory."""
+    """Render time, the worker's largest memory, and what it took to set the scene up."""
     about = (NAME, point.scene.name, film.entry.name, point.parameter, point.amount)
     return [Row(*about, "render", "s", tuple(result.seconds["render"] for result in results)),
-            Row(*about, "memory", "MB", tuple(result.peak_memory_mb for result in results))]
+            Row(*about, "memory", "MB", tuple(result.peak_memory_mb for result in results)),
+            Row(*about, "setup", "s", tuple(result.seconds["setup"] for result in results[:1]))]
 
 
 def elements() -> Iterator[Point]:
@@ -89,7 +91,7 @@ def samples() -> Iterator[Point]:
 
 def lights() -> Iterator[Point]:
     """The lamp cut into so many small ones; samples per element are those of one lamp times their number."""
-    for number in COUNTS:
+    for number in LIGHTS:
         table = base()
         lamp = table["light"].pop()
         corners = np.array(lamp["shape"]["vertices"])
@@ -102,7 +104,7 @@ def lights() -> Iterator[Point]:
 def blockers() -> Iterator[Point]:
     """Small squares half way between lamp and floor."""
     level = np.array([[-0.6, -0.6, 0.6], [-0.6, 0.6, 0.6], [0.6, 0.6, 0.6], [0.6, -0.6, 0.6]])
-    for number in COUNTS:
+    for number in BLOCKERS:
         table = base()
         table["surface"] = [{"id": f"blocker-{place}", "reflectance": 0.0, "shape": {"type": "polygon", "vertices": square}}
                             for place, square in enumerate(squares(level, number))]

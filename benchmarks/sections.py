@@ -105,12 +105,13 @@ def growth(rows: Sequence[Row]) -> list[Part]:
         here = [row for row in timed if row.parameter == parameter]
         found = {method: fitted([row for row in here if row.method == method]) for method in methods}
         powers: dict[str, Power] = {method: power for method, power in found.items() if power}
-        memory = {row.method: row for row in rows if row.parameter == parameter and row.phase == "memory" and row.each}
+        last = {(row.method, row.phase): row.median for row in rows if row.parameter == parameter and row.each}
         body = [[method, wording.number(power.exponent.value), interval(power.exponent),
-                 wording.seconds(power.overhead) if power.overhead else "", f"{wording.number(memory[method].median)} MB"]
+                 wording.seconds(power.overhead) if power.overhead else "", f"{wording.number(last[method, 'memory'])} MB",
+                 wording.seconds(last[method, "setup"])]
                 for method, power in powers.items()]
         parts.append(Part(f"Time against {parameter}", plots.curves(here, powers, methods) if powers else None,
-                          ("method", "exponent", "interval", "overhead", "memory at the end"), body))
+                          ("method", "exponent", "interval", "overhead", "memory at the end", "set-up at the end"), body))
     return parts
 
 
