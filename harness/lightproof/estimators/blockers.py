@@ -15,7 +15,7 @@ from lightproof.estimators.vectors import dot, like, sub
 from lightproof.scene import AreaLight, Scene, Surface
 
 CONTACT = 1e-12  # of a distance: what lies no farther in front of a plane than this coincides with it
-INLINED = {"forceinline": True}  # measured: three balls are tested twelve times as fast
+INLINED = {"forceinline": True}  # fresh from the compiler, three balls took ten times as long as from the cache
 INSIDE = 0.9999  # of a sphere's radius squared: what is nearer to its centre lies inside, and not on it by rounding
 
 
