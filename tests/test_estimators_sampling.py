@@ -11,7 +11,7 @@ from scipy import stats
 
 from lightproof.estimators import shapes
 from lightproof.estimators.directions import cosine_power
-from lightproof.estimators.lamps import arriving, lamp, parameters
+from lightproof.estimators.lamps import arriving, faced, lamp, parameters
 from lightproof.estimators.lighting import spot_on_sphere
 from lightproof.estimators.rng import TICK, block_keys, draws, stream, uniform
 from lightproof.estimators.trigonometry import turn
@@ -121,8 +121,9 @@ def flat_point(shape, s, t):
 @njit
 def cap_points(globe, x, draws):
     out = np.empty((len(draws), 3))
+    seen = faced(globe, x, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 1.0)
     for i in range(len(draws)):
-        _, d = arriving(globe, x, draws[i, 0], draws[i, 1])
+        _, d = arriving(seen, (0.0, 0.0, 0.0), draws[i, 0], draws[i, 1])
         out[i, 0], out[i, 1], out[i, 2] = d
     return out
 
