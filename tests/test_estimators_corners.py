@@ -102,3 +102,13 @@ def test_what_reflects_still_shades_the_floor():
     picture, umbra = suite.default().scene("soft-shadow-picture"), 9 * 16 + 7
     assert suite.default().reference(picture).value[umbra] == 0
     assert method("analytic", picture).render(64, 0).film[umbra] < 1e-12
+
+
+@pytest.mark.parametrize("name", ["mc-cosine", "mc-hemisphere"])
+@pytest.mark.parametrize("case", ["hard-approach", "hard-approach:sphere"])
+def test_directions_meet_a_lamp_that_is_nearer_than_float32_tells(case, name):
+    """Before a lamp's middle, edge and corner, down to 4e-10 m: what the receiver sees of it, within five standard errors."""
+    near = suite.default().scene(case)
+    exact, rendering = suite.default().reference(near).value, method(name, near).render(1 << 16, 1)
+    error = np.sqrt(rendering.variance) + 1e-5 * exact
+    assert (np.abs(rendering.film - exact) < 5 * error).all()

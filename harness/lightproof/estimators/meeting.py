@@ -13,14 +13,31 @@ import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators.compiled import fast
-from lightproof.estimators.lamps import arriving, faced
+from lightproof.estimators.lamps import arriving, faced, level_of
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import Flat, Sphere, covers, placed
+from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, placed
 from lightproof.estimators.skies import Dome, placed_dome, sky_radiances
 from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.vectors import dot, like, scaled, sub
 
 GRAZING = 1e-12  # cosines below count as none: a ray along a plane does not meet it
+
+
+class Window(NamedTuple):
+    """A flat light as directions meet it from an element. `level` [m] is the height of the element's middle over the light's
+    plane and `margins` lead, in the light's parameters, from the point below the middle to the light's edges: what float32
+    would lose of a light that is near."""
+
+    shape: Flat
+    level: float
+    margins: tuple[float, ...]
+
+
+class Ball(NamedTuple):
+    """A sphere as directions meet it from an element; `level` [m2] is as in `lamps.Facing`."""
+
+    shape: Sphere
+    level: float
 
 
 class Uniform(NamedTuple):
@@ -60,7 +77,47 @@ def light_placed(light, origin, frame, model):
 def _light_placed(light, origin, frame, model):
     if light.instance_class is Dome:
         return lambda light, origin, frame, model: placed_dome(light, frame, model)
-    return lambda light, origin, frame, model: placed(light, origin, frame, model)
+    if light.instance_class is Sphere:
+        return ball
+    return window
+
+
+def ball(light, origin, frame, model):
+    return Ball(placed(light, origin, frame, model), like(model, level_of(light, sub(origin, light.center))))
+
+
+def window(light, origin, frame, model):
+    o = sub(origin, light.center)
+    margins = margins_of(light, dot(o, light.dual_u), dot(o, light.dual_v), model)
+    return Window(placed(light, origin, frame, model), like(model, dot(o, light.normal)), margins)
+
+
+def margins_of(shape, a, b, model):
+    """The `margins` of a flat shape at its parameters a, b."""
+
+
+@overload(margins_of)
+def _margins_of(shape, a, b, model):
+    return {
+        Parallelogram: lambda shape, a, b, model: (
+            like(model, 0.5 + a), like(model, 0.5 - a), like(model, 0.5 + b), like(model, 0.5 - b)),
+        Triangle: lambda shape, a, b, model: (like(model, a), like(model, b), like(model, 1 - a - b)),
+        Disk: lambda shape, a, b, model: (like(model, 2 * a), like(model, 2 * b), like(model, 1 - a * a - b * b)),
+    }[shape.instance_class]
+
+
+def within(shape, margins, a, b):
+    """Whether a step of a, b in the parameters of a flat shape stays within its `margins`."""
+
+
+@overload(within)
+def _within(shape, margins, a, b):
+    return {
+        Parallelogram: lambda shape, margins, a, b: (
+            (a >= -margins[0]) & (a <= margins[1]) & (b >= -margins[2]) & (b <= margins[3])),
+        Triangle: lambda shape, margins, a, b: (a >= -margins[0]) & (b >= -margins[1]) & (a + b <= margins[2]),
+        Disk: lambda shape, margins, a, b: a * (a + margins[0]) + b * (b + margins[1]) <= margins[2],
+    }[shape.instance_class]
 
 
 @overload(arriving)
@@ -97,28 +154,38 @@ def meet(light, x, w):
 
 @overload(meet)
 def _meet(light, x, w):
-    return {Sphere: _meet_sphere, Dome: _meet_dome}.get(light.instance_class, _meet_flat)
+    return {Sphere: _meet_sphere, Ball: _meet_ball, Dome: _meet_dome, Window: _meet_window}[light.instance_class]
 
 
-def _meet_flat(light, x, w):
-    o = sub(x, light.center)
-    above, approach = dot(o, light.normal), -dot(w, light.normal)
+def _meet_window(light, x, w):
+    shape = light.shape
+    above, approach = dot(x, shape.normal) + light.level, -dot(w, shape.normal)
     d = scaled(above / max(approach, like(above, GRAZING)), w)
-    a, b = dot(o, light.dual_u) + dot(d, light.dual_u), dot(o, light.dual_v) + dot(d, light.dual_v)
+    a, b = dot(x, shape.dual_u) + dot(d, shape.dual_u), dot(x, shape.dual_v) + dot(d, shape.dual_v)
     facing = (above > like(above, 0)) & (approach > like(above, GRAZING))
-    return like(above, 1) if facing & covers(light, a, b) else like(above, 0), d
+    return like(above, 1) if facing & within(shape, light.margins, a, b) else like(above, 0), d
 
 
 def _meet_sphere(light, x, w):
-    """From outside; `foot` leads from the ray's nearest point to the centre."""
-    o = sub(light.center, x)
+    return met(light, level_of(light, sub(x, light.center)), x, w)
+
+
+def _meet_ball(light, x, w):
+    c = light.shape.center
+    return met(light.shape, light.level + dot(x, sub(sub(x, c), c)), x, w)
+
+
+@fast
+def met(sphere, level, x, w):
+    """From outside, where `level` is positive; `foot` leads from the ray's nearest point to the centre."""
+    o = sub(sphere.center, x)
     reach = dot(o, w)
     foot = sub(o, scaled(reach, w))
     zero = like(reach, 0)
-    rest = light.radius * light.radius - dot(foot, foot)
-    d = scaled(reach - math.sqrt(max(rest, zero)), w)
-    outside = dot(o, o) > light.radius * light.radius
-    return like(reach, 1) if (rest > zero) & (reach > zero) & outside else zero, d
+    rest = sphere.radius * sphere.radius - dot(foot, foot)
+    ahead = (rest > zero) & (reach > zero) & (level > zero)
+    d = scaled(level / max(reach + math.sqrt(max(rest, zero)), like(reach, GRAZING)), w)
+    return like(reach, 1) if ahead else zero, d
 
 
 def _meet_dome(light, x, w):

@@ -16,9 +16,9 @@ from lightproof.estimators import shapes
 from lightproof.estimators.aims import INLINED, Aim, counted
 from lightproof.estimators.fans import COINCIDES
 from lightproof.estimators.lamps import Facing, arriving, level_of, parameters
-from lightproof.estimators.meeting import GRAZING, around, covers, meet
+from lightproof.estimators.meeting import GRAZING, around, meet
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import Sphere
+from lightproof.estimators.shapes import Sphere, covers
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub
 
 
