@@ -37,8 +37,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="name, glob, module:name, file.py:name or manifest.toml (default: each renderer's best configuration)")
     add("--tags", nargs="+", action="extend", default=[], metavar="TAG",
         help="scenes with one of these; nightly: every case of every scene, every configuration")
-    add("--budget", type=seconds, default=250.0, metavar="S", help="of the whole run (default: %(default)g s)")
-    add("--cell-budget", type=seconds, default=60.0, metavar="S", help="of a scene and method (default: %(default)g s)")
+    add("--budget", type=seconds, default=900.0, metavar="S", help="of the whole run (default: %(default)g s)")
+    add("--cell-budget", type=seconds, default=240.0, metavar="S", help="of a scene and method (default: %(default)g s)")
     add("--replicates", type=count(2), default=REPLICATES, metavar="N", help="films a step (default: the rule's %(default)s)")
     add("--threads", type=count(1), default=machine.usable_cores(), metavar="N", help="default: all cores, %(default)s here")
     add("--seed", type=count(0), default=0, metavar="N", help="another seed, other noise (default: %(default)s)")

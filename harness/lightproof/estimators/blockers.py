@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numba import types
@@ -25,10 +26,15 @@ Plane = tuple[np.ndarray, np.ndarray]  # a point and a unit normal
 def between(scene: Scene, own: str, light: Flat | Sphere | None, receiving: Plane | None) -> list[Flat | Sphere]:
     """What can cast a shadow of one piece `light` (None: of a point or a beam) of the light or surface `own` on the plane
     `receiving` (None: on anything): every other surface and light but those that lie behind a plane of the two."""
-    solid = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, AreaLight | Surface) and item.id != own]
-    pieces = [piece for item in solid for piece in parts(item.shape) if not encloses(item)]
     planes = [plane for plane in (receiving, None if light is None else plane_of(light)) if plane is not None]
-    return [piece for piece in pieces if all(reaches(piece, *plane) for plane in planes)]
+    return [piece for owner, piece in solids(scene) if owner != own and all(reaches(piece, *plane) for plane in planes)]
+
+
+@lru_cache(maxsize=8)
+def solids(scene: Scene) -> tuple[tuple[str, Flat | Sphere], ...]:
+    """Every piece that can cast a shadow, with the id of what it belongs to."""
+    things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, AreaLight | Surface) and not encloses(item)]
+    return tuple((item.id, piece) for item in things for piece in parts(item.shape))
 
 
 def plane_of(piece: Flat | Sphere) -> Plane | None:

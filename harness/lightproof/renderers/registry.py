@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Container
 from dataclasses import dataclass
 
 from lightproof.checked import shown
@@ -27,11 +28,11 @@ def _ours(name: str, target: str, nightly: bool = False) -> Entry:
     return Entry(name, f"lightproof.estimators.{target}", worker=OURS, nightly=nightly)
 
 
-def _sampling(name: str, target: str, nightly: bool = False) -> list[Entry]:
-    """A method that samples direct light, with each kind of points in both precisions."""
+def _sampling(name: str, target: str, quick: Container[str] = ()) -> list[Entry]:
+    """A method that samples direct light, with each kind of points in both precisions; nightly but for `quick` options."""
     points = ("", "jitter", "lattice", "sobol")
     options = ["-".join(filter(None, (kind, precision))) for precision in ("", "float64") for kind in points]
-    return [_ours(f"{name}/{option}" if option else name, target, nightly=nightly or bool(option)) for option in options]
+    return [_ours(f"{name}/{option}" if option else name, target, nightly=option not in quick) for option in options]
 
 
 def _mitsuba(option: str, worker: str = "mitsuba") -> Entry:
@@ -56,15 +57,15 @@ METHODS = {
         _ours("riemann-area", "riemann_area:RiemannArea"),
         _ours("riemann-hemisphere", "riemann_hemisphere:RiemannHemisphere"),
         _ours("cubature", "cubature:Cubature", nightly=True),
-        *_sampling("mc-area", "mc_area:McArea"),
+        *_sampling("mc-area", "mc_area:McArea", quick=("", "sobol")),
         *_sampling("mc-hemisphere", "mc_hemisphere:McHemisphere"),
         *_sampling("mc-cosine", "mc_cosine:McCosine"),
-        *_sampling("mc-solid-angle", "mc_solid_angle:McSolidAngle", nightly=True),
-        *_sampling("mc-projected-solid-angle", "mc_projected:McProjected", nightly=True),
-        *_sampling("mc-mis", "mc_mis:McMis", nightly=True),
+        *_sampling("mc-solid-angle", "mc_solid_angle:McSolidAngle"),
+        *_sampling("mc-projected-solid-angle", "mc_projected:McProjected"),
+        *_sampling("mc-mis", "mc_mis:McMis"),
         _ours("path", "path:Path"),
         _ours("path/no-next-event", "path:Path", nightly=True),
-        _ours("path/recursion", "path_recursion:PathRecursion", nightly=True),
+        _ours("path/recursion", "path_recursion:PathRecursion"),
         _ours("textbook", "textbook:Textbook", nightly=True),
         _ours("textbook/float32", "textbook:Textbook", nightly=True),
         Entry("mitsuba", "lightproof.renderers.mitsuba:Mitsuba", worker="mitsuba", extra="mitsuba"),
