@@ -25,6 +25,7 @@ MOST_SAMPLES = 2**30
 STEPS_FOR_A_SLOPE = 3
 SLOPE_CAN_WAIT = 4  # a step that serves only the slope gives way to one for a verdict that costs up to so many times as much
 CHEAP = 0.02  # of a cell's budget: a step that costs less is taken without looking further ahead
+SPARE = 0.5  # s: a step that costs a run less is taken for what it tells of error against time, whatever is decided
 LIKELY = 0.5  # of the samples that nearly always decide: what decides as a rule
 SHORTEST_TIMEOUT = 30.0
 SLOWER_THAN_EXPECTED = 10
@@ -43,7 +44,8 @@ class Decision:
 class Cell:
     """One method on one scene: its results so far by step of the ladder (samples per element), and what they decide.
     `budget` [s] is what set-up and rendering may take; `replicates` is the number of films a step; no step has more than
-    `most_samples` per element, and `least_steps` are taken even where fewer decide."""
+    `most_samples` per element; `least_steps` are taken even where fewer decide, and so is every step that takes less than
+    `spare` [s]."""
 
     scene: Scene
     entry: Entry
@@ -51,6 +53,7 @@ class Cell:
     replicates: int
     most_samples: int = MOST_SAMPLES
     least_steps: int = STEPS_FOR_A_SLOPE
+    spare: float = 0.0
     steps: dict[int, list[Result]] = field(default_factory=dict)
     decision: Decision = Decision(False)
 
@@ -107,7 +110,7 @@ class Cell:
         """Whether another film would say something and its step fits into the cell's own budget."""
         if self.broken or self.next_samples > self.most_samples or self.seconds + self.next_seconds > self.budget:
             return False
-        return self.height < self.least_steps or self.decidable
+        return self.height < self.least_steps or self.next_seconds < self.spare or self.decidable
 
     @property
     def decidable(self) -> bool:
