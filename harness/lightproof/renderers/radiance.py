@@ -154,7 +154,8 @@ def strata(scene: Scene, planned: Transport) -> int:
 def options(scene: Scene, planned: Transport, parts: int, cache: bool) -> list[str]:
     """Of rtrace: as many bounces as count; a lamp or the hemisphere in `parts`; indirect light from a `cache` or not."""
     lamps = ["-ds", "0" if planned.bounces or parts == 1 else "1e-4", "-dj", "0" if planned.middle else "1"]
-    around = ["-ab", str(planned.bounces), "-lr", str(-planned.bounces - 1), "-as", "0"]
+    around = ["-ab", str(planned.bounces), "-as", "0"]
     stored = CACHED if cache else ["-aa", "0", "-ad", str(parts if planned.bounces else 1)]
+    depth = planned.bounces + 1  # a negative limit means roulette, in which the 512 rays of a cached value would never end
     irradiance = [] if isinstance(scene.film, CameraFilm) else ["-I+"]
-    return [*EXACT, *lamps, *around, *stored, *irradiance]
+    return [*EXACT, *lamps, *around, *stored, "-lr", str(depth if cache else -depth), *irradiance]

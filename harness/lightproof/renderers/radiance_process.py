@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from lightproof.renderers.worker import die_with
+
 LAG = 0.05  # s: more than the clock that rtrace reads is behind
 FAR = 1e9  # m
 BLOCK = 2048  # rays at a time: their answers fit into a pipe, so that neither side waits for the other for ever
@@ -84,9 +86,10 @@ class Rtrace:
 
     def __init__(self, command: Sequence[str], environment: dict[str, str], said: Path):
         self._said = said
-        pipe = subprocess.PIPE
+        pipe, mother = subprocess.PIPE, os.getpid()
         with said.open("wb") as errors:
-            self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, env=environment)
+            self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, env=environment,
+                                             preexec_fn=lambda: die_with(mother))
         self._answer(np.eye(6)[-1:])  # any ray: when it is answered, the stream of random numbers has begun
 
     def trace(self, rays: np.ndarray, skipped: int = 0) -> np.ndarray:
