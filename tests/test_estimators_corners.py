@@ -73,7 +73,7 @@ def test_points_on_a_ball_are_not_in_its_own_shadow():
     expected = 2.04 * 4 * a / math.hypot(1, a) * math.atan(a / math.hypot(1, a))
     for name in able(top):
         rendering = method(name, top).render(1 << 14, 1)
-        error = 1e-3 * expected if rendering.variance is None else math.sqrt(rendering.variance[0])
+        error = 1e-3 * expected if rendering.variance is None else math.sqrt(rendering.variance[0]) + 1e-7 * expected  # float32
         assert abs(rendering.film[0] - expected) < 4.5 * error, name
 
 

@@ -88,7 +88,9 @@ def parts(shape: geometry.Shape) -> list[Flat | Sphere | Cap]:
 
 
 def polygon_parts(corners: np.ndarray) -> list[Flat]:
-    """One parallelogram where the corners (n, 3) make one, else triangles."""
+    """One parallelogram where the corners (n, 3) make one, else triangles; nothing where they hold no area."""
+    if not geometry.vector_area(corners).any():
+        return []
     if len(corners) == 4 and np.abs(corners[0] - corners[1] + corners[2] - corners[3]).max() <= PARALLEL * np.ptp(corners):
         return [flat(Parallelogram, (corners[0] + corners[2]) / 2, corners[1] - corners[0], corners[3] - corners[0])]
     return [flat(Triangle, a, b - a, c - a) for a, b, c in triangulated(corners)]
