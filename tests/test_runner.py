@@ -36,9 +36,9 @@ class FakePool:
 
 
 def climb(tmp_path, pool: FakePool, decide: Callable[[Sequence[Result]], Decision], budget: float = 1e9, cell_budget: float = 1e9,
-          told: list[Progress] | None = None, record: store.Store | None = None, spare: float = 0.0) -> list[Cell]:
+          told: list[Progress] | None = None, record: store.Store | None = None, **wanted: float) -> list[Cell]:
     """The cells after a run of every method of the pool on one scene."""
-    cells = [Cell(SCENE, Entry(name, "x:X", worker=name), cell_budget, REPLICATES, spare=spare) for name in pool.cost]
+    cells = [Cell(SCENE, Entry(name, "x:X", worker=name), cell_budget, REPLICATES, **wanted) for name in pool.cost]
     record = record or store.create(tmp_path, RUN, SCENES)
     return Runner(cells, budget, record, pool, decide, ([] if told is None else told).append).run()
 
@@ -80,6 +80,13 @@ def test_cheap_steps_are_taken_whatever_is_decided(tmp_path):
     pool = FakePool({"a": 1e-6})
     climb(tmp_path, pool, decided_at(64), spare=0.1)
     assert sorted(set(steps(pool))) == [64, 256, 1024, 4096, 16384]
+
+
+def test_a_slope_is_not_worth_any_price(tmp_path):
+    """A verdict that stands at once: the step of 256 samples takes 1 ms, that of 1,024 takes 4 ms, more than 3 ms."""
+    pool = FakePool({"a": 1e-6})
+    climb(tmp_path, pool, decided_at(64), slope=0.003)
+    assert sorted(set(steps(pool))) == [64, 256]
 
 
 def test_the_deterministic_render_one_film_a_step(tmp_path):

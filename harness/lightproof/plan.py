@@ -12,7 +12,7 @@ from typing import Any
 from lightproof import machine, typed
 from lightproof.checked import plain
 from lightproof.renderers.registry import Entry
-from lightproof.runner import SPARE, Cell
+from lightproof.runner import SLOPE, SPARE, Cell
 from lightproof.scene import Scene
 from lightproof.store import Run, Store, StoreError
 from lightproof.suite import Suite
@@ -48,4 +48,4 @@ def cells(record: Store) -> list[Cell]:
         budget, replicates = options["cell_budget"], options["replicates"]
     except (KeyError, TypeError) as error:
         raise StoreError(f"{record.folder / 'run.json'}: its plan is broken ({plain(str(error))}); start a new run") from None
-    return [Cell(scene, entry, budget, replicates, spare=SPARE) for scene in record.scenes for entry in entries]
+    return [Cell(scene, entry, budget, replicates, slope=SLOPE, spare=SPARE) for scene in record.scenes for entry in entries]

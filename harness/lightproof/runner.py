@@ -8,6 +8,7 @@ compiling does not count, so cold caches change no verdict.
 from __future__ import annotations
 
 import heapq
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from statistics import median
@@ -26,6 +27,7 @@ STEPS_FOR_A_SLOPE = 3
 SLOPE_CAN_WAIT = 4  # a step that serves only the slope gives way to one for a verdict that costs up to so many times as much
 CHEAP = 0.02  # of a cell's budget: a step that costs less is taken without looking further ahead
 SPARE = 0.5  # s: a step that costs a run less is taken for what it tells of error against time, whatever is decided
+SLOPE = 10.0  # s: a step that costs a run more is not taken for a slope alone
 LIKELY = 0.5  # of the samples that nearly always decide: what decides as a rule
 SHORTEST_TIMEOUT = 30.0
 SLOWER_THAN_EXPECTED = 10
@@ -44,8 +46,8 @@ class Decision:
 class Cell:
     """One method on one scene: its results so far by step of the ladder (samples per element), and what they decide.
     `budget` [s] is what set-up and rendering may take; `replicates` is the number of films a step; no step has more than
-    `most_samples` per element; `least_steps` are taken even where fewer decide, and so is every step that takes less than
-    `spare` [s]."""
+    `most_samples` per element; where fewer decide, `least_steps` are taken as long as each takes less than `slope` [s], and every
+    step that takes less than `spare` [s]."""
 
     scene: Scene
     entry: Entry
@@ -53,6 +55,7 @@ class Cell:
     replicates: int
     most_samples: int = MOST_SAMPLES
     least_steps: int = STEPS_FOR_A_SLOPE
+    slope: float = math.inf
     spare: float = 0.0
     steps: dict[int, list[Result]] = field(default_factory=dict)
     decision: Decision = Decision(False)
@@ -109,6 +112,8 @@ class Cell:
     def wants_more(self) -> bool:
         """Whether another film would say something and its step fits into the cell's own budget."""
         if self.broken or self.next_samples > self.most_samples or self.seconds + self.next_seconds > self.budget:
+            return False
+        if self.decision.decided and self.next_seconds > self.slope:
             return False
         return self.height < self.least_steps or self.next_seconds < self.spare or self.decidable
 
