@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -115,6 +116,8 @@ UNSUPPORTED = [
     ("pyrender", "square-light", "pyrender has no area lights"),
     ("pyrender", "sphere-furnace", "pyrender has no interreflection, and its point lights cast no shadows"),
     ("pyrender", "white-furnace-plane:tilted", "pyrender's ambient light comes from everywhere"),
+    ("pyrender", "white-furnace-plane",
+     "pyrender's 8 bits leave 0.43 % of the brightest light open, and this scene's tolerance is 0.1 %"),
 ]
 
 
@@ -219,7 +222,8 @@ def test_mitsuba_averages_passes(tmp_path: Path):
 
 def test_pyrender_declares_its_steps(tmp_path: Path):
     """white-furnace-plane, E = pi 1.37 everywhere: one code of 255 is what it is off by at most, and that is what it declares."""
-    (answer,) = one_process.render("pyrender", [Shot(SUITE.scene("white-furnace-plane"), 16)], tmp_path)
+    lenient = replace(SUITE.scene("white-furnace-plane"), tolerance=0.01)
+    (answer,) = one_process.render("pyrender", [Shot(lenient, 16)], tmp_path)
     film, half_step = np.array(answer["film"]), np.array(answer["quantization"])
     assert answer["samples"] == 16
     assert (np.abs(film - np.pi * 1.37) <= half_step).all()

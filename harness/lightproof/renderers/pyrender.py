@@ -20,6 +20,7 @@ from lightproof.renderers.views import View
 from lightproof.scene import CameraFilm, DirectionalLight, Environment, Light, PointLight, Scene
 
 GAMMA, FULL = 2.2, 255
+FINEST = 1 - (1 - 0.5 / FULL) ** GAMMA  # half a step of the output, of the brightest that it holds
 LARGEST = 4096  # pixels along a side of a frame
 BRIGHT = 0.9  # of full scale: where the exposure puts the brightest pixel
 PROBE = 8  # pixels along each side of an element while the exposure is looked for
@@ -60,6 +61,9 @@ class Pyrender(Method):
             return "pyrender has no interreflection, and its point lights cast no shadows"
         if isinstance(scene.film, CameraFilm):
             return "pyrender draws no light sources"
+        if scene.tolerance < FINEST:
+            return (f"pyrender's 8 bits leave {100 * FINEST:.2g} % of the brightest light open, and this scene's tolerance is"
+                    f" {100 * scene.tolerance:g} %")
         return views.unsupported(scene) or _stretched(scene)
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
