@@ -8,7 +8,7 @@ from lightproof.scene import CameraFilm, Scene
 
 MOST = 10_000  # reflections that a renderer without a limit of its own is made to follow
 CUT = 1e-3  # of the tolerance: what the reflections beyond the last one may hold, where all are asked for
-FAINT = 0.01  # of its first weight: a path that is left with so little may be ended at random and hardly adds to the noise
+FAINT = 1e-3  # of its first weight: a path that is left with so little may be ended at random and hardly adds to the noise
 SLACK = 0.1  # of the tolerance: the same where a renderer's limit comes first
 
 
