@@ -8,6 +8,7 @@ from __future__ import annotations
 import importlib
 import math
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -20,6 +21,7 @@ from lightproof.estimators import paths, points
 from lightproof.estimators.blockers import visible
 from lightproof.estimators.estimator import sampled
 from lightproof.estimators.lamps import lamp
+from lightproof.estimators.points import Random
 from lightproof.estimators.shapes import Parallelogram, flat, triangulated
 from lightproof.renderers.registry import METHODS
 from lightproof.scene import Scene
@@ -263,7 +265,7 @@ def test_fast_shadows_are_the_ray_tracer_s(shape):
     blockers = tuple(blocker(name, BLOCKERS[name]) for name in shape)
     one = scene([area_light(rectangle(-0.5, -0.5, 1, 1, 1.2))], at_points([[0.1, 0.05, 0], [0.5, 0.3, 0]]), blockers)
     fast = method("mc-area", one).render(1 << 17, 1)
-    film, _, variance = sampled(paths.paths(one).add, one.size, 1 << 17, 2, 2)
+    film, _, variance = sampled(partial(paths.paths(one).add, Random(1 << 17, 2)), one.size, 1 << 17, 2)
     assert (np.abs(fast.film - film) < SIGMAS * np.sqrt(fast.variance + variance)).all()
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from lightproof.estimators.estimator import sampled
 from lightproof.estimators.mc_area import McArea
 from lightproof.estimators.mc_cosine import McCosine
 from lightproof.estimators.mc_hemisphere import McHemisphere
-from lightproof.estimators.points import drawn, grid, opened
+from lightproof.estimators.points import Random, drawn, grid, opened
 from lightproof.estimators.riemann_hemisphere import RiemannHemisphere
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.views import view
@@ -54,10 +55,10 @@ def traced(one: Scene, power: int, samples: int) -> tuple[np.ndarray, int, np.nd
     """Film, samples and variance by the generic ray tracer."""
     items, skies, _, film, elements, contact = build(one).arrays
 
-    def add(first: int, last: int, span: tuple[int, int], seed: int, out: np.ndarray) -> None:
-        directions.estimate(items, skies, film, elements[first:last], contact, first, seed, span, power, out)
+    def add(first: int, last: int, span: tuple[int, int], out: np.ndarray) -> None:
+        directions.estimate(items, skies, film, elements[first:last], contact, first, 7, span, power, out)
 
-    return sampled(add, one.size, samples, 7, 2)
+    return sampled(add, one.size, samples, 2)
 
 
 @pytest.mark.parametrize(("cls", "power"), [(McHemisphere, 0), (McCosine, 1)])
@@ -119,7 +120,7 @@ def test_patches_that_pixels_see_are_the_tracer_s(film):
     one = scene(table["light"], table["surface"], film, max_bounces=1)
     assert view(one) is not None
     fast = prepared(McArea, one).render(1 << 16, 3)
-    film, _, variance = sampled(paths.Paths(build(one), 1, glow=False).add, one.size, 1 << 16, 4, 2)
+    film, _, variance = sampled(partial(paths.Paths(build(one), 1, glow=False).add, Random(1 << 16, 4)), one.size, 1 << 16, 2)
     assert (np.abs(fast.film - film) < SIGMAS * np.sqrt(fast.variance + variance)).all()
 
 

@@ -32,17 +32,18 @@ def trial(samples: int = 64, replicate: int = 0, method: str = "mitsuba/scalar")
 
 def recorded(record: store.Store, trial: Trial, **fields) -> Result:
     """A result with a film of noise, whose image stands where the store wants it, appended to the record."""
-    film, variance = np.random.default_rng(trial.seed).random((2, SCENES[0].size))
+    film, *told = np.random.default_rng(trial.seed).random((3, SCENES[0].size))
+    variance, bound = (one.astype(np.float32).astype(float) for one in told)
     path = record.film_path(trial)
     path.parent.mkdir(parents=True, exist_ok=True)
-    films.write(path, SCENES[0].film.grid, {"Y": film, "variance": variance}, {"method": trial.method})
-    result = Result(trial, Status.OK, film=film, variance=variance.astype(np.float32).astype(float), samples=70, **fields)
+    films.write(path, SCENES[0].film.grid, {"Y": film, "variance": variance, "bound": bound}, {"method": trial.method})
+    result = Result(trial, Status.OK, film=film, variance=variance, bound=bound, samples=70, **fields)
     record.append(result)
     return result
 
 
 def same(one: Result, other: Result) -> bool:
-    arrays = ("film", "variance", "quantization")
+    arrays = ("film", "variance", "quantization", "bound")
     plain = [{name: value for name, value in vars(result).items() if name not in arrays} for result in (one, other)]
     close = (np.allclose(getattr(one, name), getattr(other, name), rtol=1e-13, atol=0) for name in arrays)
     return plain[0] == plain[1] and all(close)

@@ -1,8 +1,8 @@
 """Films as OpenEXR: 32-bit float channels that tev and Blender open, with what the film is in the header.
 
 Channel Y is the film. A method that computes in float64 keeps its digits: `residual` is what rounding Y to float32 left
-out, and `residual2` what rounding that did. `variance`, `quantization`, `tessellation` and `peak` are there where the
-method knows them.
+out, and `residual2` what rounding that did. `variance`, `quantization`, `tessellation`, `peak` and `bound` are there where
+the method knows them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from lightproof import exr
 from lightproof.exr import FilmError
 
 RESIDUALS = ("residual", "residual2")
-EXTRAS = ("variance", "quantization", "tessellation", "peak")
+EXTRAS = ("variance", "quantization", "tessellation", "peak", "bound")
 PARTIAL = ".partial"  # what a film is called until it is whole
 
 

@@ -38,6 +38,8 @@ def find(rung: Rung, before: Rung | None) -> Finding:
         return Finding(Outcome.UNDECIDED, f"{len(rung.results)} of {rung.replicates} replicates")
     if rung.declared and not rung.identical:
         return Finding(Outcome.ERROR, "the method is declared deterministic, but its films differ")
+    if rung.disproves.any():
+        return Finding(Outcome.FAIL, _disproof(rung))
     if rung.declared:
         return _find_noiseless(rung, before)
     if rung.repeated:
@@ -101,7 +103,9 @@ def _mean_side(rung: Rung) -> int:
 
 
 def _margin(rung: Rung) -> str:
-    return f"every tile within {100 * rung.reach[:rung.scale.tiles + 1].max():.2g} % of the exact light"
+    margin = f"every tile within {100 * rung.reach[:rung.scale.tiles + 1].max():.2g} % of the exact light"
+    proven = rung.bound.max()
+    return f"{margin}, every element within {100 * proven:.2g} % by the method's own proof" if np.isfinite(proven) else margin
 
 
 def _accusation(rung: Rung, votes: np.ndarray) -> str:
@@ -134,6 +138,14 @@ def _blindness(rung: Rung) -> str:
     return (f"{rung.scale.place(worst)} is off by {_interval(rung, worst)}, yet a single sample could move it {leap}, so that"
             " what no sample met cannot be told from what is not there; directions into the light, as mc-solid-angle draws them,"
             " weigh 4 pi L at most")
+
+
+def _disproof(rung: Rung) -> str:
+    """Where a method's own bound of its error does not hold."""
+    worst = int(np.argmax(rung.disproves * np.abs(rung.errors).max(axis=0)))
+    place = rung.scale.place(rung.scale.tiles + 1 + worst)
+    off = 100 * rung.errors[:, worst][np.argmax(np.abs(rung.errors[:, worst]))]
+    return f"{place} is off by {off:+.3g} %, which the method says it proves to be {100 * rung.bound[worst]:.2g} % at most"
 
 
 def _interval(rung: Rung, index: int) -> str:

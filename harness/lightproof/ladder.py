@@ -230,6 +230,18 @@ class Rung:
         """-1 or +1 where an interval votes for a bias below or above the tolerance, else 0, (J + 1 + n,)."""
         return self.suspects * ~self.blind
 
+    @cached_property
+    def bound(self) -> np.ndarray:
+        """How far off each element is at most, as the method proves of its films (n,); infinite where it does not."""
+        proven = [result.bound for result in self.results if result.bound is not None]
+        return np.max(proven, axis=0) / self.scale.unit if proven else np.full(len(self.scale.value), np.inf)
+
+    @property
+    def disproves(self) -> np.ndarray:
+        """Where an element's light is farther off than its `bound` says, (n,)."""
+        slack = self.uncertainty[self.scale.tiles + 1:]
+        return np.abs(self.errors).max(axis=0) > self.bound + slack
+
     @property
     def passes(self) -> bool:
         """Whether every tile and the mean lie inside the tolerance (every element, without noise) and no element is suspect."""

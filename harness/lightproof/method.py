@@ -24,7 +24,7 @@ class Unavailable(Exception):
 class Rendering:
     """One film as a method gives it; see `trial.Result` for the fields. `seconds` may split off the phase compile; what it
     does not name, the worker counts as render. `bound` (n,) [unit] is a proof of how far off each value can be: a promise to be
-    held to, not a doubt to be added to the error, which is known where the exact light is."""
+    held to, not a doubt that widens an interval."""
 
     film: np.ndarray
     samples: int

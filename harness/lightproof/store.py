@@ -115,11 +115,11 @@ class Store:
 
     def _arrays(self, trial: Trial) -> dict[str, Any]:
         _, channels, _ = films.read(self.film_path(trial))
-        known = {name: channels.get(name) for name in ("variance", "tessellation", "peak")}
+        known = {name: channels.get(name) for name in ("variance", "tessellation", "peak", "bound")}
         return {"film": channels["Y"], "quantization": channels.get("quantization", 0.0), **known}
 
 
-ARRAYS = ("film", "variance", "quantization", "tessellation", "peak")
+ARRAYS = ("film", "variance", "quantization", "tessellation", "peak", "bound")
 ABSENT = ("trial", *ARRAYS)
 OPTIONS = {"budget": "float", "cell_budget": "float", "replicates": "int", "methods": "list", "suites": "Mapping[str, str]"}
 

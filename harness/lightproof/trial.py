@@ -49,6 +49,7 @@ class Result:
     samples] are row-major; `quantization` is half a step of the output [unit], (n,) or 0; `tessellation` (n,) [unit] is what
     triangles in the place of round shapes change at most, infinite where that is not known, None without triangles; `peak` (n,)
     [unit] is the largest value that one sample can have, infinite where there is none, None where the method does not know it;
+    `bound` (n,) [unit] is how far off each value is at most, as the method proves, None where it does not;
     `samples` is what was really spent per element; `seconds` has the phases setup, compile and render."""
 
     trial: Trial
@@ -58,6 +59,7 @@ class Result:
     quantization: np.ndarray | float = 0.0
     tessellation: np.ndarray | None = None
     peak: np.ndarray | None = None
+    bound: np.ndarray | None = None
     samples: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
     version: str = ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -18,7 +19,8 @@ from lightproof.trial import Result, Status, Trial
 @dataclass(frozen=True)
 class Step:
     """One step of the ladder, judged with the step before it where there is one. Errors are fractions of the tolerance
-    scale; `seconds_*` are medians for one film; a number that cannot be told is NaN."""
+    scale; `bound` is the largest that the method proves itself; `seconds_*` are medians for one film; a number that cannot be
+    told is NaN."""
 
     samples: int
     replicates: int
@@ -32,6 +34,7 @@ class Step:
     detectable_bias: float
     rmse: float
     max_error: float
+    bound: float
     seconds_setup: float
     seconds_compile: float
     seconds_render: float
@@ -171,6 +174,7 @@ def _step(rung: Rung, finding: Finding) -> Step:
         detectable_bias=rung.detectable_bias,
         rmse=rung.rmse,
         max_error=float(np.abs(rung.bias[mean + 1:]).max()),
+        bound=float(rung.bound.max()) if np.isfinite(rung.bound).all() else math.nan,
         seconds_setup=_median_seconds(rung, "setup"),
         seconds_compile=_median_seconds(rung, "compile"),
         seconds_render=_median_seconds(rung, "render"),

@@ -29,8 +29,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """One line for each method, several for a manifest; 3 where one that is installed does not render, or a check fails."""
     console, home = Console(emoji=False, highlight=False, soft_wrap=True), suite.default()
-    fine = [_conforms(entry, home, console) if conformance.applies(entry) else _renders(entry, home, console)
-            for entry in selection.methods(options.methods, tags=[])]
+    fine = []
+    for entry in selection.methods(options.methods, tags=[]):
+        with console.status(f"{escape(entry.name)}: compiling and rendering"):
+            fine.append(_conforms(entry, home, console) if conformance.applies(entry) else _renders(entry, home, console))
     return DONE if all(fine) else INCOMPLETE
 
 

@@ -51,9 +51,9 @@ class Estimator(Method):
         """Run every kernel that this scene needs once, as little as it can do."""
 
 
-def sampled(add: Callable, size: int, samples: int, seed: int, threads: int) -> tuple[np.ndarray, int, np.ndarray | None]:
+def sampled(add: Callable, size: int, samples: int, threads: int) -> tuple[np.ndarray, int, np.ndarray | None]:
     """Film, samples and variance of a kernel that adds up values and their squares."""
-    sums = spread(lambda first, last, span, out: add(first, last, span, seed, out), size, samples, 2, threads)
+    sums = spread(add, size, samples, 2, threads)
     return sums[:, 0] / samples, samples, variance_of_mean(sums[:, 0], sums[:, 1], samples)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from lightproof.estimators.estimator import sampled
@@ -9,6 +11,7 @@ from lightproof.estimators.limits import no_caps, no_cylinders, no_glowing_insid
 from lightproof.estimators.paths import Paths
 from lightproof.estimators.peaks import largest
 from lightproof.estimators.pieces import Piece, aimed
+from lightproof.estimators.points import Random
 from lightproof.estimators.sampling import Sampling
 from lightproof.estimators.views import View
 from lightproof.method import Rendering
@@ -57,4 +60,6 @@ class McArea(Sampling):
         return (pivots + totals) / points.samples, points.samples, variance
 
     def traced(self, samples: int, seed: int) -> Rendering:
-        return Rendering(*sampled(self.paths.add, self.size, samples, seed, self.threads))
+        points = self.points(samples, seed)
+        film, taken, variance = sampled(partial(self.paths.add, points), self.size, points.samples, self.threads)
+        return Rendering(film, taken, variance if self.points is Random else None)

@@ -50,7 +50,7 @@ class McHemisphere(Sampling):
         items, skies, _, film, elements, contact = self.world.arrays
         power = {Uniform: 0, Cosine: 1}[self.source]
 
-        def add(first: int, last: int, span: tuple[int, int], own_seed: int, out: np.ndarray) -> None:
-            directions.estimate(items, skies, film, elements[first:last], contact, first, own_seed, span, power, out)
+        def add(first: int, last: int, span: tuple[int, int], out: np.ndarray) -> None:
+            directions.estimate(items, skies, film, elements[first:last], contact, first, seed, span, power, out)
 
-        return Rendering(*sampled(add, self.size, samples, seed, self.threads))
+        return Rendering(*sampled(add, self.size, samples, self.threads))

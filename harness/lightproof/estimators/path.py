@@ -13,17 +13,19 @@ from lightproof.estimators.mc_area import McArea
 from lightproof.estimators.options import Choices
 from lightproof.estimators.paths import Paths, paths
 from lightproof.estimators.points import Random
+from lightproof.estimators.sobol import sobol
 from lightproof.estimators.views import View
 from lightproof.scene import Scene
 
 
 class Path(McArea):
     """Every scene that the format knows, but for cylinders and solid angles; any number of reflections. path/no-next-event
-    aims at no light and meets all of them by its directions."""
+    aims at no light and meets all of them by its directions; where rays are followed, path/sobol takes the places in an element,
+    and nothing else, from the sequence."""
 
     choices: ClassVar[Choices] = {
         "lights": {"next-event": True, "no-next-event": False},
-        "points": {"independent": Random},
+        "points": {"independent": Random, "sobol": sobol},
         "precision": {"float32": np.float32},
     }
     samples_lights = False
@@ -35,10 +37,14 @@ class Path(McArea):
 
     def settings(self) -> Mapping[str, Any]:
         density = "cos(theta)/pi per solid angle" + ("; of lights 1/A per area" if self.aims else "")
-        return {**super().settings(), "domain": "paths", "pdf": density, "roulette": "unbiased"}
+        points = {} if self.view or self.points is Random else {"points": f"{self.chosen['points']} over the element"}
+        return {**super().settings(), **points, "domain": "paths", "pdf": density, "roulette": "unbiased"}
 
     def unsupported(self, scene: Scene) -> str | None:
         return super().unsupported(scene) or (None if self.aims else no_bulbs(scene))
+
+    def untraceable(self, scene: Scene) -> str | None:
+        return None
 
     def seen(self, scene: Scene) -> View | None:
         return super().seen(scene) if self.aims and not any(limit(scene) for limit in McArea.limits) else None

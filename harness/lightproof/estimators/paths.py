@@ -14,10 +14,12 @@ from lightproof.estimators import batch
 from lightproof.estimators.aiming import from_bulbs, illuminate
 from lightproof.estimators.batch import keep, settle
 from lightproof.estimators.compiled import strict_kernel
+from lightproof.estimators.points import Random
 from lightproof.estimators.recursion import Even, Zoned, reflect
 from lightproof.estimators.rng import block_keys, mix64, stream
 from lightproof.estimators.rounds import gather_sky, land, play, scatter
 from lightproof.estimators.scenery import Scenery, scenery
+from lightproof.estimators.sobol import Sobol
 from lightproof.estimators.solids import find
 from lightproof.estimators.starts import CAMERAS, FILMS, Receivers, Within, begin, sum_up
 from lightproof.estimators.world import LAMP, RADIANCE, SAMPLED, World, build
@@ -90,17 +92,18 @@ def walk(recursion, scenery, bounces, glow, faint, state, slots, totals, count, 
 
 
 @strict_kernel
-def estimate(film, recursion, scenery, bounces, glow, faint, first, samples, seed, out):
+def estimate(film, recursion, scenery, bounces, glow, faint, first, samples, points, out):
     """Sums of the value and of its square over samples `samples[0]` to `samples[1]` of each element of `film`, of which the
-    first is number `first`; `out` (n, 2). Light of up to `bounces` reflections after a path's first vertex, -1: none at it."""
+    first is number `first`, at places that `points` give; `out` (n, 2). Light of up to `bounces` reflections after a path's first
+    vertex, -1: none at it."""
     state, totals = np.empty(batch.ROWS * batch.SIZE), np.empty(batch.SIZE)
     slots = np.empty(batch.SIZE, np.uint32)
     each = samples[1] - samples[0]
-    key = stream(seed, first, samples[0])
+    key = stream(points.seed, first, samples[0])
     for number in range(0, each * len(film.rows), batch.SIZE):
         count = min(batch.SIZE, each * len(film.rows) - number)
         own = stream(key, number, 0)
-        begin(film, state, slots, number, count, each, block_keys(own, 0))
+        begin(film, points, state, slots, first, samples, number, count, block_keys(own, 0))
         going = look(film, scenery, state, slots, totals, count, own)
         follow(recursion, scenery, bounces, glow, faint, state, slots, totals, going, own)
         sum_up(totals, number, count, each, out)
@@ -117,12 +120,12 @@ class Paths:
     recursion: Even | Zoned | None = None
     inside: bool = False
 
-    def add(self, first: int, last: int, samples: tuple[int, int], seed: int, out: np.ndarray) -> None:
+    def add(self, points: Random | Sobol, first: int, last: int, samples: tuple[int, int], out: np.ndarray) -> None:
         """Sums over samples `samples[0]` to `samples[1]` of elements `first` to `last`, into `out` (last - first, 2)."""
         kind = Within if self.inside else FILMS[self.world.film]
         faint = self.faint / np.pi if kind in CAMERAS else self.faint
         estimate(kind(self.world.elements[first:last]), self.recursion, self.scenery, self.bounces - (kind is not Receivers),
-                 self.glow, faint, first, samples, seed, out)  # fmt: skip
+                 self.glow, faint, first, samples, points, out)  # fmt: skip
 
     @cached_property
     def faint(self) -> float:

@@ -10,7 +10,8 @@ from numba.extending import overload
 
 from lightproof.estimators.batch import LIGHT, NORMAL, PLACE, REACH, TOTAL, WAY, WEIGHT, put
 from lightproof.estimators.compiled import fast, inlined, strict
-from lightproof.estimators.rng import TICK, draws
+from lightproof.estimators.points import Random, drawn, opened
+from lightproof.estimators.rng import BLOCK, TICK, draws
 from lightproof.estimators.tracing import vector
 from lightproof.estimators.vectors import along, unit
 from lightproof.estimators.world import ORTHOGRAPHIC, PERSPECTIVE, RECEIVER
@@ -57,16 +58,46 @@ def _first_weight(film):
 
 
 @strict
-def begin(film, state, slots, number, count, each, keys):
-    """Paths `number` and following, `each` of them from every element, at uniform places of it."""
+def begin(film, points, state, slots, first, samples, number, count, keys):
+    """Paths `number` and following, samples `samples[0]` to `samples[1]` of every element, at uniform places of it. The film's
+    first element is number `first`."""
     for i in range(count):
         slots[i], state[WEIGHT + i], state[TOTAL + i] = i, first_weight(film), 0.0
-        s, t = draws(i, keys, 1.0)[:2]
-        state[P + i], state[Q + i] = s * TICK, t * TICK
+    choose(points, state, first, samples, number, count, keys)
+    each = samples[1] - samples[0]
     i = 0
     while i < count:
         element, last = run(number, i, count, each)
         start_all(film, vectors(film.rows[element]), state[i:], last - i)
+        i = last
+
+
+def choose(points, state, first, samples, number, count, keys):
+    """Every path's place in its element: independent ones need no order."""
+
+
+@overload(choose)
+def _choose(points, state, first, samples, number, count, keys):
+    return scattered if points.instance_class is Random else in_order
+
+
+def scattered(points, state, first, samples, number, count, keys):
+    for i in range(count):
+        s, t = draws(i, keys, 1.0)[:2]
+        state[P + i], state[Q + i] = s * TICK, t * TICK
+
+
+def in_order(points, state, first, samples, number, count, keys):
+    each = samples[1] - samples[0]
+    i = 0
+    while i < count:
+        element, last = run(number, i, count, each)
+        block, within = divmod(samples[0] + number + i - element * each, BLOCK)
+        last = min(last, i + BLOCK - within)
+        own = opened(points, first + element, block)
+        for k in range(i, last):
+            s, t = drawn(within + k - i, own, 1.0)[:2]
+            state[P + k], state[Q + k] = s * TICK, t * TICK
         i = last
 
 

@@ -21,7 +21,7 @@ from lightproof.trial import Result, Status, Trial
 
 PATIENCE = 60.0
 PREPARING = 5  # times the patience: to compile may take a minute of a machine that has nothing else to do
-UNBOUNDED = ("tessellation", "peak")  # channels that may be infinite
+UNBOUNDED = ("tessellation", "peak", "bound")  # channels that may be infinite
 DOING = {"open": "starting the renderer", "prepare": "preparing the scene", "render": "rendering"}
 
 
@@ -144,6 +144,7 @@ class Pool:
             quantization=channels.get("quantization", 0.0),
             tessellation=channels.get("tessellation"),
             peak=channels.get("peak"),
+            bound=channels.get("bound"),
             samples=answer["samples"],
             seconds={**prepared.seconds, **answer["seconds"]},
             version=about.version,
@@ -201,7 +202,7 @@ class Pool:
 
 def read_film(path: Path, scene: Scene) -> dict[str, np.ndarray]:
     """The channels of a film, (n,) each. Raises FilmError where it is no film of `scene`, or not finite, or negative; only what
-    triangles change and what one sample can add may be infinite: not known, and not bounded."""
+    triangles change, what one sample can add and what a method proves may be infinite: not known, and not bounded."""
     grid, channels, header = films.read(path)
     if header.get("digest") != scene.digest:
         raise FilmError(f"the film's header names another scene (digest {header.get('digest')});"

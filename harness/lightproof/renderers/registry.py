@@ -64,6 +64,7 @@ METHODS = {
         *_sampling("mc-projected-solid-angle", "mc_projected:McProjected"),
         *_sampling("mc-mis", "mc_mis:McMis"),
         _ours("path", "path:Path"),
+        _ours("path/sobol", "path:Path", nightly=True),
         _ours("path/no-next-event", "path:Path", nightly=True),
         _ours("path/recursion", "path_recursion:PathRecursion"),
         _ours("textbook", "textbook:Textbook", nightly=True),

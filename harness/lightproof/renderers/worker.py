@@ -122,7 +122,8 @@ def channels(rendering: Rendering, size: int, tessellation: np.ndarray | None = 
     """The arrays of a rendering, (n,) each. Raises FilmError where one is misshapen."""
     if not rendering.samples >= 1:
         raise films.FilmError(f"the film has {rendering.samples!r:.40} samples; it must be those spent per element, 1 or more")
-    given = {"Y": rendering.film, "variance": rendering.variance, "tessellation": tessellation, "peak": rendering.peak}
+    given = {"Y": rendering.film, "variance": rendering.variance, "tessellation": tessellation, "peak": rendering.peak,
+             "bound": rendering.bound}
     if np.any(rendering.quantization):
         given["quantization"] = np.broadcast_to(rendering.quantization, (size,))
     for name, values in given.items():

@@ -135,11 +135,16 @@ def overall(chosen: Sequence[Choice]) -> str:
     reached = [choice for choice in chosen if choice.fastest]
     if not reached:
         return f"To {percent(chosen[0].error, 1)}: nothing came so far on any scene."
+    return " ".join(filter(None, [f"To {percent(chosen[0].error, 1)}: {_fastest(reached, len(chosen))}.", _compared(chosen)]))
+
+
+def _fastest(reached: Sequence[Choice], scenes: int) -> str:
     counts = Counter(choice.fastest.method for choice in reached).most_common()
+    if scenes == 1:
+        return f"fastest of all is {counts[0][0]}"
     others = [("others", sum(count for _, count in counts[NAMED:]))] if len(counts) > NAMED else []
     fastest = ", ".join(f"{method} on {count}" for method, count in counts[:NAMED] + others)
-    return " ".join(filter(None, [f"To {percent(chosen[0].error, 1)}: fastest of all are {fastest} of {len(chosen)} scenes.",
-                                  _compared(chosen)]))
+    return f"fastest of all are {fastest} of {scenes} scenes"
 
 
 def _compared(chosen: Sequence[Choice]) -> str:

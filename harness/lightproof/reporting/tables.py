@@ -15,7 +15,7 @@ from lightproof.verdict import Step
 RESULTS = (
     "run", "scene", "case", "method", "version", "settings", "precision", "threads", "machine", "seed", "samples", "replicates",
     "outcome", "bias", "bias_low", "bias_high", "worst_tile_bias", "worst_tile_low", "worst_tile_high", "detectable_bias",
-    "tolerance", "rmse", "max_error", "tessellation", "seconds_setup", "seconds_compile", "seconds_render",
+    "tolerance", "rmse", "max_error", "bound", "tessellation", "seconds_setup", "seconds_compile", "seconds_render",
     "samples_per_second", "peak_memory_mb", "message",
 )  # fmt: skip
 SUMMARY = (
@@ -25,7 +25,8 @@ SUMMARY = (
 COUNTS = ("samples", "replicates", "threads", "seed")
 OF_STEP = (
     "samples", "replicates", "outcome", "bias", "bias_low", "bias_high", "worst_tile_bias", "worst_tile_low", "worst_tile_high",
-    "detectable_bias", "rmse", "max_error", "seconds_setup", "seconds_compile", "seconds_render", "peak_memory_mb", "message",
+    "detectable_bias", "rmse", "max_error", "bound", "seconds_setup", "seconds_compile", "seconds_render", "peak_memory_mb",
+    "message",
 )  # fmt: skip
 
 
