@@ -32,6 +32,7 @@ AT_ONCE = 1 << 18  # rays made at a time
 EXACT = ["-dt", "0", "-dc", "1", "-dr", "0", "-dp", "0", "-st", "1", "-lw", str(FAINT)]
 """No shadow ray is left out, faint paths end by Russian roulette alone."""
 CACHED = ["-aa", "0.1", "-ar", "64", "-ad", "512", "-lw", "1e-4"]
+MOST_CACHED = 2  # times that the cache is made to look around: in a furnace each further one takes ten times as long
 
 SEQUENCE, RANDOM = "-u-", "-u+"
 PERIOD = 2048  # numbers of the sequence, one of them for each ray and light
@@ -74,9 +75,7 @@ class Radiance(Method):
         if scene.film.quantity == "solid_angle":
             return "Radiance gives no solid angles"
         reason = radiance_transport.unsupported(scene, self._plan(scene))
-        if self.option == CACHE and not reason and not (scene.reflects and self._plan(scene).bounces):
-            return "no light here is indirect, so that Radiance interpolates none"
-        return reason
+        return reason or (_uncached(scene, self._plan(scene)) if self.option == CACHE else None)
 
     def caveat(self, scene: Scene) -> str:
         even = all(radiance_transport.is_parallelogram(lamp.shape) for lamp in radiance_transport.lamps(scene))
@@ -127,6 +126,16 @@ class Radiance(Method):
         if self.rtraces:
             self.rtraces.close()
         self.rtraces = self.programs.rtraces(self.options, self.octree, self.threads)
+
+
+def _uncached(scene: Scene, planned: Transport) -> str | None:
+    """Why Radiance's ambient cache is nothing for a scene, or None."""
+    if not (scene.reflects and planned.bounces):
+        return "no light here is indirect, so that Radiance interpolates none"
+    if planned.bounces > MOST_CACHED:
+        return (f"light that counts here is found by looking around {planned.bounces} times, and Radiance's ambient cache takes"
+                f" about ten times as long for each beyond {MOST_CACHED}")
+    return None
 
 
 def _lamps(planned: Transport) -> str:
