@@ -1,7 +1,7 @@
 """Samples per second: `mc-area` against Mitsuba's fastest configuration, a hand-written Mitsuba loop, Cycles and the others.
 
 The film has more elements than the scene's own, because that suits renderers which work on all pixels side by side. Those
-compared with each other take the same number of samples per element.
+compared with each other take the same number of samples per element; methods that sample nothing have no place here.
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from lightproof import suite
+from lightproof.estimators.rates import DOMAINS
 from lightproof.renderers.registry import METHODS, Entry
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status
-from race import Film, Track, failure, ours, phases, renderers
+from race import Film, Track, failure, family, ours, phases, renderers
 from rows import Row
 
 NAME = "throughput"
@@ -29,12 +30,13 @@ CHOOSING = 3  # rounds that choose Mitsuba's configuration, at half the samples
 
 def measure(track: Track, add: Callable[[Iterable[Row]], None], rounds: int, quick: bool) -> None:
     """One race a scene and number of samples."""
+    sampling = [entry for entry in ours() if family(entry.name) in DOMAINS]
     for name in SCENES[: 1 if quick else None]:
         many, resolution = (MANY // 8, (32, 24)) if quick else (MANY, RESOLUTION)
         scene = suite.default().scene(name)
         scene = replace(scene, film=replace(scene.film, resolution=resolution))
-        slower = [entry for family, entries in renderers().items() if family != "mitsuba" for entry in entries[:1]]
-        race(track, scene, [*ours(), LOOP, BUNDLE, *fastest(track, scene, many, add)], many, rounds, add)
+        slower = [entry for renderer, entries in renderers().items() if renderer != "mitsuba" for entry in entries[:1]]
+        race(track, scene, [*sampling, LOOP, BUNDLE, *fastest(track, scene, many, add)], many, rounds, add)
         race(track, scene, [METHODS["mc-area"], METHODS["mitsuba"], *slower], FEW, rounds, add)
 
 

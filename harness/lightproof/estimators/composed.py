@@ -24,7 +24,7 @@ class Composed(Estimator):
         seen = self.seen(scene)
         self.pieces = self.sources(scene, seen) if seen else []
         self.view = seen if self.pieces else None  # where nothing shines, rays find nothing
-        self.peaks = [peaks.peak(seen, piece.lamp) for piece in self.pieces]
+        self.peaks = peaks.peaks(seen, [piece.lamp for piece in self.pieces]) if self.view else None
         self.precision = np.dtype(self.real).name if self.view else "float64"
         self.world = None if self.view else world.build(scene)
 

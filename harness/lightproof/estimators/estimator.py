@@ -62,6 +62,9 @@ def spread(add: Callable, size: int, steps: int, columns: int, threads: int, mos
     columns) do not depend on `threads`."""
     tiles, spans = cuts(size, most), cuts(steps, most // size)
     sums = np.zeros((len(spans), size, columns))
+    if len(tiles) == len(spans) == 1:
+        add(0, size, spans[0], sums[0])
+        return sums[0]
     tasks = [(part, tile) for part in range(len(spans)) for tile in tiles]
     waiting = iter(tasks)
 
@@ -76,6 +79,7 @@ def spread(add: Callable, size: int, steps: int, columns: int, threads: int, mos
     return sums.sum(axis=0)
 
 
+@cache
 def cuts(count: int, pieces: int) -> list[tuple[int, int]]:
     """0 to `count` in so many pieces of about one size, none empty: first and last + 1 of each."""
     pieces = max(1, min(count, pieces))
@@ -92,4 +96,4 @@ def variance_of_mean(total: np.ndarray, square: np.ndarray, samples: int) -> np.
     """Variance of the mean of `samples` values from the sums of them and of their squares; one sample has none."""
     if samples < 2:
         return None
-    return np.maximum(square - total**2 / samples, 0) / (samples - 1) / samples
+    return np.maximum(square - total * total / samples, 0) / ((samples - 1) * samples)

@@ -30,6 +30,7 @@ class McArea(Sampling):
     def build(self, scene: Scene) -> None:
         super().build(scene)
         self.receivers = self.view.receivers if self.view else None
+        self.shares = shares([piece.power for piece in self.pieces])
         self.paths = None if self.view else self.followed(scene)
 
     def followed(self, scene: Scene) -> Paths:
@@ -40,17 +41,12 @@ class McArea(Sampling):
         return aimed(scene, seen)
 
     def composed(self, samples: int, seed: int) -> Rendering:
-        drawn = [self.drawn(index, count, seed) for index, count in enumerate(self.counts(samples))]
+        counts = (max(1, round(samples * share)) for share in self.shares)
+        drawn = [self.drawn(index, count, seed) for index, count in enumerate(counts)]
         films, counts, variances = zip(*drawn, strict=True)
         variance = None if any(one is None for one in variances) else sum(variances)
         peak = largest(self.peaks, np.array(counts) / sum(counts))
         return Rendering(sum(films), sum(counts), variance, peak=peak)
-
-    def counts(self, samples: int) -> list[int]:
-        """Samples are shared out over the lights' pieces by power."""
-        power = np.array([piece.power for piece in self.pieces])
-        shares = power / power.sum() if power.any() else np.full(len(power), 1 / len(power))
-        return [max(1, round(samples * share)) for share in shares]
 
     def drawn(self, index: int, samples: int, seed: int) -> tuple[np.ndarray, int, np.ndarray | None]:
         """Film (n,) of one piece alone, samples taken, and its variance (n,)."""
@@ -63,3 +59,9 @@ class McArea(Sampling):
         points = self.points(samples, seed)
         film, taken, variance = sampled(partial(self.paths.add, points), self.size, points.samples, self.threads)
         return Rendering(film, taken, variance if self.points is Random else None)
+
+
+def shares(power: list[float]) -> list[float]:
+    """Of the samples, by the power of lights' pieces; equal ones where none shines."""
+    total = sum(power)
+    return [one / total if total else 1 / len(power) for one in power]

@@ -19,15 +19,17 @@ from lightproof.estimators.parallel import Level
 from lightproof.estimators.shapes import Disk, Flat, Sphere, Triangle, area, support
 from lightproof.estimators.views import COVERS, View
 
-Bounds = Sequence[np.ndarray | None]
+
+def peaks(view: View, sources: Sequence[object]) -> np.ndarray | None:
+    """The `peak` of each source, (sources, n); None where one is not known."""
+    found = [peak(view, source) for source in sources]
+    return np.array(found) if found and not any(one is None for one in found) else None
 
 
-def largest(bounds: Bounds, shares: Sequence[float]) -> np.ndarray | None:
-    """What one sample of a film can add at most (n,), where each source has a share of the samples; None where one of the
-    `bounds` on sources is not known."""
-    if any(bound is None for bound in bounds):
-        return None
-    return np.max([bound / share for bound, share in zip(bounds, shares, strict=True)], axis=0)
+def largest(bounds: np.ndarray | None, shares: np.ndarray) -> np.ndarray | None:
+    """What one sample of a film can add at most (n,), where each source has a share of the samples (sources,); None where
+    the `bounds` on sources (sources, n) are not known."""
+    return None if bounds is None else (bounds / shares[:, None]).max(axis=0)
 
 
 def peak(view: View, source: object) -> np.ndarray | None:
