@@ -1,6 +1,6 @@
 """Every claim about speed, measured in one run: a CSV, a page and a table of what was met.
 
-    python benchmarks/run.py                      # all parts, about a quarter of an hour
+    python benchmarks/run.py                      # all parts, about half an hour
     python benchmarks/run.py --only growth cache  # some of them
 """
 
