@@ -124,9 +124,14 @@ def test_unknown_options_are_refused(name, reason):
     assert chosen("mc-area/float64-sobol", SAMPLING) == chosen("mc-area/sobol-float64", SAMPLING)
 
 
-def test_paths_have_independent_points_only():
-    with pytest.raises(ValueError, match="path has no option 'sobol'"):
-        Path("path/sobol", 1)
+def test_paths_order_no_points_but_the_places_in_an_element():
+    """Where rays are followed the settings say so; where the kernel of mc-area is all that is left, all points are ordered."""
+    with pytest.raises(ValueError, match="path has no option 'jitter'"):
+        Path("path/jitter", 1)
+    for name, points in (("soft-shadow-picture", "sobol over the element"), ("square-light", "sobol")):
+        path = Path("path/sobol", 1)
+        path.prepare(CATALOGUE.scene(name))
+        assert path.settings()["points"] == points
 
 
 def test_a_film_that_needs_rays_is_refused():

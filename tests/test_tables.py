@@ -15,7 +15,7 @@ from lightproof.reporting.evaluation import Evaluation, evaluate
 
 RESULTS = """run, scene, case, method, version, settings, precision, threads, machine, seed, samples, replicates, outcome,
 bias, bias_low, bias_high, worst_tile_bias, worst_tile_low, worst_tile_high, detectable_bias, tolerance, rmse, max_error,
-tessellation, seconds_setup, seconds_compile, seconds_render, samples_per_second, peak_memory_mb, message"""
+bound, tessellation, seconds_setup, seconds_compile, seconds_render, samples_per_second, peak_memory_mb, message"""
 SUMMARY = """scene, case, method, outcome, samples, bias, bias_low, bias_high, detectable_bias, tolerance,
 seconds_to_1_percent, seconds_to_0_1_percent, seconds_to_0_01_percent, slope, efficiency, message"""
 

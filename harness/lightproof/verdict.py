@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -19,8 +18,8 @@ from lightproof.trial import Result, Status, Trial
 @dataclass(frozen=True)
 class Step:
     """One step of the ladder, judged with the step before it where there is one. Errors are fractions of the tolerance
-    scale; `bound` is the largest that the method proves itself; `seconds_*` are medians for one film; a number that cannot be
-    told is NaN."""
+    scale; `bound` is the largest that the method proves itself, None where it proves none; `seconds_*` are medians for one film;
+    a number that cannot be told is NaN."""
 
     samples: int
     replicates: int
@@ -34,7 +33,7 @@ class Step:
     detectable_bias: float
     rmse: float
     max_error: float
-    bound: float
+    bound: float | None
     seconds_setup: float
     seconds_compile: float
     seconds_render: float
@@ -174,7 +173,7 @@ def _step(rung: Rung, finding: Finding) -> Step:
         detectable_bias=rung.detectable_bias,
         rmse=rung.rmse,
         max_error=float(np.abs(rung.bias[mean + 1:]).max()),
-        bound=float(rung.bound.max()) if np.isfinite(rung.bound).all() else math.nan,
+        bound=float(rung.bound.max()) if np.isfinite(rung.bound).all() else None,
         seconds_setup=_median_seconds(rung, "setup"),
         seconds_compile=_median_seconds(rung, "compile"),
         seconds_render=_median_seconds(rung, "render"),
