@@ -39,7 +39,7 @@ def find(rung: Rung, before: Rung | None) -> Finding:
     if rung.declared and not rung.identical:
         return Finding(Outcome.ERROR, "the method is declared deterministic, but its films differ")
     if rung.disproves.any():
-        return Finding(Outcome.FAIL, _disproof(rung))
+        return Finding(Outcome.ERROR, _disproof(rung))
     if rung.declared:
         return _find_noiseless(rung, before)
     if rung.repeated:
