@@ -26,8 +26,7 @@ FEW_SAMPLES, MORE_SAMPLES = 64, 1024
 GRID = [16, 12]
 ELEMENTS = ([1, 1], [4, 3], [16, 12], [64, 48], [256, 192], [1000, 1000])
 SAMPLES = tuple(4**power for power in range(3, 12))
-LIGHTS = (1, 3, 10, 30, 100)
-BLOCKERS = (*LIGHTS, 300, 1000)
+COUNTS = (1, 3, 10, 30, 100, 300, 1000)  # of lights, of blockers
 LONGEST = 4  # times what a renderer's film may take: a method that would take longer, in proportion, stops
 SIDE = 0.7  # of its place, of a small square
 
@@ -91,7 +90,7 @@ def samples() -> Iterator[Point]:
 
 def lights() -> Iterator[Point]:
     """The lamp cut into so many small ones; samples per element are those of one lamp times their number."""
-    for number in LIGHTS:
+    for number in COUNTS:
         table = base()
         lamp = table["light"].pop()
         corners = np.array(lamp["shape"]["vertices"])
@@ -104,7 +103,7 @@ def lights() -> Iterator[Point]:
 def blockers() -> Iterator[Point]:
     """Small squares half way between lamp and floor."""
     level = np.array([[-0.6, -0.6, 0.6], [-0.6, 0.6, 0.6], [0.6, 0.6, 0.6], [0.6, -0.6, 0.6]])
-    for number in BLOCKERS:
+    for number in COUNTS:
         table = base()
         table["surface"] = [{"id": f"blocker-{place}", "reflectance": 0.0, "shape": {"type": "polygon", "vertices": square}}
                             for place, square in enumerate(squares(level, number))]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 from numba import types
@@ -11,11 +12,12 @@ from numba.extending import overload
 
 from lightproof import geometry
 from lightproof.estimators.compiled import fast
-from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, placed, support
+from lightproof.estimators.extents import reaching
+from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, placed
 from lightproof.estimators.vectors import dot, like, sub
-from lightproof.scene import AreaLight, Scene, Surface
+from lightproof.estimators.world import WIDTH, Item, item_row
+from lightproof.scene import Scene
 
-CONTACT = 1e-12  # of a distance: what lies no farther in front of a plane than this coincides with it
 INLINED = {"forceinline": True}  # fresh from the compiler, three balls took ten times as long as from the cache
 INSIDE = 0.9999  # of a sphere's radius squared: what is nearer to its centre lies inside, and not on it by rounding
 
@@ -23,32 +25,40 @@ INSIDE = 0.9999  # of a sphere's radius squared: what is nearer to its centre li
 Plane = tuple[np.ndarray, np.ndarray]  # a point and a unit normal
 
 
-def between(scene: Scene, own: str, light: Flat | Sphere | None, receiving: Plane | None) -> list[Flat | Sphere]:
-    """What can cast a shadow of one piece `light` (None: of a point or a beam) of the light or surface `own` on the plane
-    `receiving` (None: on anything): every other surface and light but those that lie behind a plane of the two."""
-    planes = [plane for plane in (receiving, None if light is None else plane_of(light)) if plane is not None]
-    return [piece for owner, piece in solids(scene) if owner != own and all(reaches(piece, *plane) for plane in planes)]
+class Solids(NamedTuple):
+    """Pieces that can cast a shadow, (m,): the id of what each belongs to, and its row of a `World` (m, WIDTH)."""
+
+    owners: np.ndarray
+    pieces: tuple[Flat | Sphere, ...]
+    rows: np.ndarray
 
 
-@lru_cache(maxsize=8)
-def solids(scene: Scene) -> tuple[tuple[str, Flat | Sphere], ...]:
-    """Every piece that can cast a shadow, with the id of what it belongs to."""
-    things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, AreaLight | Surface) and not encloses(item)]
-    return tuple((item.id, piece) for item in things for piece in parts(item.shape))
+def standing(scene: Scene) -> list[Item]:
+    """What of a scene can cast a shadow."""
+    return [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, Item) and not encloses(item)]
+
+
+def solids(items: Iterable[Item]) -> Solids:
+    """The pieces of lights and surfaces. Raises TypeError on a cylinder."""
+    owned = [(item, piece) for item in items for piece in parts(item.shape)]
+    rows = [item_row(item, piece, sample_surfaces=False) for item, piece in owned]
+    return Solids(np.array([item.id for item, _ in owned]), tuple(piece for _, piece in owned), np.reshape(rows, (-1, WIDTH)))
+
+
+def between(all_: Solids, own: str, *planes: Plane | None) -> Solids:
+    """What of `all_` can cast a shadow of a piece of the light or surface `own`: the others that lie in front of the `planes`
+    of that piece and of what receives, None for what lies in none."""
+    before = [reaching(all_.rows, *plane) for plane in planes if plane is not None]
+    kept = np.flatnonzero(np.all([all_.owners != own, *before], axis=0))
+    return Solids(all_.owners[kept], tuple(all_.pieces[k] for k in kept), all_.rows[kept])
 
 
 def plane_of(piece: Flat | Sphere) -> Plane | None:
     """The plane of a flat piece."""
-    return None if isinstance(piece, Sphere) else (np.array(piece.center), np.array(piece.normal))
+    return (np.array(piece.center), np.array(piece.normal)) if isinstance(piece, Flat) else None
 
 
-def reaches(piece: Flat | Sphere, point: np.ndarray, normal: np.ndarray) -> bool:
-    """Whether any of the piece lies in front of a plane."""
-    level = float(point @ normal)
-    return support(piece, normal) - level > CONTACT * (abs(level) + np.abs(piece.center).max())
-
-
-def encloses(item: AreaLight | Surface) -> bool:
+def encloses(item: Item) -> bool:
     """Whether this is a sphere seen from inside; it stands around film and lights, and between none."""
     return isinstance(item.shape, geometry.Sphere) and getattr(item, "side", "outside") == "inside"
 

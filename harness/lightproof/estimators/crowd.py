@@ -1,6 +1,6 @@
 """Many blockers: rows of an array instead of a tuple of types, tested one blocker at a time against a whole block of samples.
 
-A row (COLUMNS,) is: kind, centre, normal, dual u, dual v, radius.
+A row (COLUMNS,) is what `FIELDS` has of an item of a `World`: kind, centre, normal, dual u, dual v, radius.
 """
 
 from __future__ import annotations
@@ -11,22 +11,12 @@ from numba.extending import overload
 
 from lightproof.estimators.blockers import all_placed, hidden
 from lightproof.estimators.compiled import fast
-from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle
+from lightproof.estimators.shapes import Disk, Parallelogram, Sphere, Triangle
 from lightproof.estimators.vectors import like, sub, turned
-from lightproof.estimators.world import DISK, KINDS, PARALLELOGRAM, TRIANGLE
+from lightproof.estimators.world import CENTER, DISK, KIND, NORMAL, PARALLELOGRAM, RADIUS, TRIANGLE, U
 
-COLUMNS = 14
-
-
-def rows(pieces: list[Flat | Sphere]) -> np.ndarray:
-    """The blockers as an array (m, COLUMNS)."""
-    return np.array([row(piece) for piece in pieces])
-
-
-def row(piece: Flat | Sphere) -> list[float]:
-    if isinstance(piece, Sphere):
-        return [KINDS[Sphere], *piece.center, *np.zeros(9), piece.radius]
-    return [KINDS[type(piece)], *piece.center, *piece.normal, *piece.dual_u, *piece.dual_v, 0.0]
+FIELDS = [KIND, *range(CENTER, U), *range(NORMAL, RADIUS + 1)]  # of a `World`'s item
+COLUMNS = len(FIELDS)
 
 
 @overload(all_placed)

@@ -10,7 +10,7 @@ import numpy as np
 
 from lightproof.estimators import round_curves
 from lightproof.estimators.analytic_limits import disks_unsupported, receiving_planes
-from lightproof.estimators.blockers import Plane, encloses
+from lightproof.estimators.blockers import Plane, encloses, standing
 from lightproof.estimators.cells import HIGHEST
 from lightproof.estimators.limits import no_caps
 from lightproof.estimators.panorama import Panorama
@@ -19,9 +19,10 @@ from lightproof.estimators.shapes import parts
 from lightproof.estimators.sheet import Sheet, tidied
 from lightproof.estimators.sky_rows import SKIES, UP, sky_rows
 from lightproof.estimators.supports import crossing, plane_of, reaches
-from lightproof.estimators.terms import SOLID, Term, farthest, solids, terms
+from lightproof.estimators.terms import Term, farthest, obstacles, terms
 from lightproof.estimators.terms import receivers as rows
-from lightproof.geometry import Cylinder, Disk, Polygon, Sphere
+from lightproof.estimators.world import Item
+from lightproof.geometry import Cylinder, Disk, Polygon, Shape, Sphere
 from lightproof.scene import (
     AreaLight,
     CameraFilm,
@@ -55,7 +56,7 @@ def with_curves(term: Term, scene: Scene) -> Term:
 
 def unsupported(scene: Scene) -> str | None:
     """Why some direct light has neither a closed form nor can be found by a look around."""
-    things = solid(scene)
+    things = standing(scene)
     tubes = [thing for thing in things if isinstance(thing.shape, Cylinder)]
     if tubes and isinstance(scene.film, CameraFilm):
         return f"its camera sees no cylinders ('{tubes[0].id}' is one)"
@@ -74,20 +75,22 @@ def angular(scene: Scene) -> bool:
     return scene.film.quantity == "solid_angle"
 
 
-def solid(scene: Scene) -> list[SOLID]:
-    return [thing for thing in (*scene.lights, *scene.surfaces) if isinstance(thing, SOLID) and not encloses(thing)]
-
-
 def shining(scene: Scene) -> bool:
     """Whether there are area lights or skies."""
-    return any(isinstance(light, SKIES) for light in scene.lights) or any(thing.radiance for thing in solid(scene))
+    return any(isinstance(light, SKIES) for light in scene.lights) or any(thing.radiance for thing in standing(scene))
 
 
 def parted(scene: Scene) -> tuple[Scene, Scene]:
     """The scene with the lights that have closed forms only, and with the others only; what does not shine still blocks."""
-    things = {thing.id: thing for thing in (*scene.lights, *scene.surfaces)}
-    open_ = {name for name, thing in things.items() if not (angular(scene) or needs_panorama(scene, thing))}
-    return without(scene, things.keys() - open_), without(scene, open_)
+    things = {thing.id for thing in (*scene.lights, *scene.surfaces)}
+    closed = set() if angular(scene) else with_closed_forms(scene)
+    return without(scene, things - closed), without(scene, closed)
+
+
+def with_closed_forms(scene: Scene) -> set[str]:
+    """The ids of what has a closed form, if it shines."""
+    faced = facing(scene)
+    return {thing.id for thing in (*scene.lights, *scene.surfaces) if not needs_panorama(scene, thing, faced)}
 
 
 def without(scene: Scene, names: set[str]) -> Scene:
@@ -102,19 +105,18 @@ def dark(light: Light) -> Light | None:
     return replace(light, radiance=0.0) if isinstance(light, AreaLight) else None
 
 
-def needs_panorama(scene: Scene, thing: Thing) -> bool:
-    """Whether what shadows a light, or the light itself, has no closed form."""
-    if not isinstance(thing, SKIES | SOLID) or (isinstance(thing, SOLID) and not thing.radiance):
+def needs_panorama(scene: Scene, thing: Thing, faced: list[Item]) -> bool:
+    """Whether what shadows a light, or the light itself, has no closed form; `faced` may shadow some light."""
+    if not isinstance(thing, SKIES | Item) or (isinstance(thing, Item) and not thing.radiance):
         return False
-    shapes = [other.shape for other in before(scene, thing)]
     match getattr(thing, "shape", None):
         case Polygon():
-            return any(not isinstance(shape, Polygon) for shape in shapes)
-        case Disk() as disk if len(shapes) == 1 and isinstance(shapes[0], Disk):
+            return bool(before(thing, [other for other in faced if not isinstance(other.shape, Polygon)]))
+        case Disk() as disk if len(shapes := before(thing, faced)) == 1 and isinstance(shapes[0], Disk):
             return any(apart(disk, shapes[0], plane, thing.id) for plane in receiving_planes(scene))
         case Cylinder():
             return True
-    return bool(shapes)
+    return bool(before(thing, faced))
 
 
 def apart(light: Disk, blocker: Disk, plane: Plane | None, name: str) -> bool:
@@ -123,14 +125,18 @@ def apart(light: Disk, blocker: Disk, plane: Plane | None, name: str) -> bool:
     return disks_unsupported(one, other, plane, name) is not None
 
 
-def before(scene: Scene, thing: Thing) -> Iterator[SOLID]:
-    """What may stand between a light and what receives it."""
+def before(thing: Thing, faced: list[Item]) -> list[Shape]:
+    """What of `faced` may stand between a light and what receives it."""
     shape = getattr(thing, "shape", None)
     front = [plane_of(shape)] if isinstance(shape, Polygon | Disk) else []
-    for other in solid(scene):
-        faced = any(other is not own and (plane is None or reaches(other.shape, *plane)) for own, plane in receiving(scene))
-        if other is not thing and faced and all(reaches(other.shape, *plane) for plane in front):
-            yield other
+    return [other.shape for other in faced if other is not thing and all(reaches(other.shape, *plane) for plane in front)]
+
+
+def facing(scene: Scene) -> list[Item]:
+    """What lies in front of anything else that receives."""
+    places = list(receiving(scene))
+    return [thing for thing in standing(scene)
+            if any(thing is not own and (plane is None or reaches(thing.shape, *plane)) for own, plane in places)]
 
 
 def receiving(scene: Scene) -> Iterator[tuple[Surface | None, Plane | None]]:
@@ -145,10 +151,10 @@ def receiving(scene: Scene) -> Iterator[tuple[Surface | None, Plane | None]]:
 
 def panorama(scene: Scene) -> Panorama:
     """The source for all that shines in a scene."""
-    things, angle = sorted(solid(scene), key=lambda thing: ORDER.index(type(thing.shape))), angular(scene)
+    things, angle = sorted(standing(scene), key=lambda thing: ORDER.index(type(thing.shape))), angular(scene)
     glow = [float(isinstance(thing, AreaLight)) if angle else thing.radiance for thing in things]
     return Panorama(
-        solids=solids([thing.shape for thing in things], farthest(scene)),
+        solids=obstacles([thing.shape for thing in things], farthest(scene)),
         glow=np.array(glow, float),
         skies=sky_rows(scene, angle),
         cosine=not angle,

@@ -22,10 +22,10 @@ from lightproof.estimators.sheet import EVERYWHERE, Sheet, tidied
 from lightproof.estimators.soft_curves import edges
 from lightproof.estimators.sources import desk, irradiance
 from lightproof.estimators.supports import plane_of
-from lightproof.estimators.terms import SOLID, Term
+from lightproof.estimators.terms import Term
 from lightproof.estimators.tracing import front_normal, nearest, sky_radiance
 from lightproof.estimators.vectors import along, dot, unit
-from lightproof.estimators.world import RADIANCE, REFLECTANCE
+from lightproof.estimators.world import RADIANCE, REFLECTANCE, Item
 from lightproof.geometry import Disk, Polygon, Sphere
 from lightproof.scene import CameraFilm, OvercastSky, PlaneFilm, Scene
 
@@ -91,7 +91,7 @@ def curves(scene: Scene) -> Iterator[np.ndarray]:
     """Rows of curves in the picture: outlines, the horizon of a sky, and what the light on flat surfaces shows."""
     lens = Lens(scene.film)
     for thing in (*scene.lights, *scene.surfaces):
-        if isinstance(thing, SOLID):
+        if isinstance(thing, Item):
             yield from lens.outline(thing.shape)
     if any(isinstance(light, OvercastSky) or getattr(light, "extent", "") == "upper" for light in scene.lights):
         yield lens.horizon()

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lightproof.estimators.aiming import Beams, Points
-from lightproof.estimators.shapes import Parallelogram, Triangle
+from lightproof.estimators.extents import extents
 from lightproof.estimators.skies import UP, Everywhere, Overcast, Sky, Sun, Upper
 from lightproof.estimators.solids import grouped
 from lightproof.estimators.world import (
@@ -15,7 +15,6 @@ from lightproof.estimators.world import (
     CAP,
     CENTER,
     KIND,
-    KINDS,
     NORMAL,
     OVERCAST,
     POINT,
@@ -96,21 +95,9 @@ def divides(world: World) -> np.ndarray:
     """Whether there is something on either side of the plane of each item (m,)."""
     normals = world.items[:, NORMAL:NORMAL + 3]
     level = (world.items[:, CENTER:U] * normals).sum(axis=1)
-    low, high = (ends - level for ends in extents(world, normals.T))
+    spots = places(world) @ normals.T
+    low, high = (np.vstack([ends, spots]) - level for ends in extents(world.items, normals.T))
     return (low.min(axis=0) < -world.contact) & (high.max(axis=0) > world.contact)
-
-
-def extents(world: World, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest and highest coordinate (k, m) along `normals` (3, m) of all items, places of the film and bulbs."""
-    items = world.items
-    middle, a, b = items[:, CENTER:U] @ normals, items[:, U:V] @ normals, items[:, V:NORMAL] @ normals
-    kind = items[:, KIND, None]
-    triangle = kind == KINDS[Triangle]
-    reach = np.where(kind == KINDS[Parallelogram], (abs(a) + abs(b)) / 2, np.hypot(a, b) + items[:, RADIUS, None])
-    low = np.where(triangle, np.minimum(0, np.minimum(a, b)), -reach)
-    high = np.where(triangle, np.maximum(0, np.maximum(a, b)), reach)
-    spots = places(world) @ normals
-    return np.vstack([middle + low, spots]), np.vstack([middle + high, spots])
 
 
 def holds_all(world: World) -> np.ndarray:

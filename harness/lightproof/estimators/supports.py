@@ -8,7 +8,8 @@ from itertools import combinations, product
 import numpy as np
 
 from lightproof import geometry
-from lightproof.estimators.blockers import CONTACT, Plane
+from lightproof.estimators.blockers import Plane
+from lightproof.estimators.extents import CONTACT
 from lightproof.estimators.flats import convex_parts
 from lightproof.geometry import Cylinder, Disk, Polygon, Shape, Vec3
 from lightproof.scene import AreaLight, Surface

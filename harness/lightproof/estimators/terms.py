@@ -11,7 +11,7 @@ import numpy as np
 from lightproof import geometry
 from lightproof.estimators import elements, hard_curves, soft_curves, world
 from lightproof.estimators.analytic_limits import receiving_planes, shades
-from lightproof.estimators.blockers import encloses
+from lightproof.estimators.blockers import between, solids, standing
 from lightproof.estimators.cells import HIGHEST
 from lightproof.estimators.flats import Plane, polygon_light
 from lightproof.estimators.hard_curves import Rays
@@ -19,19 +19,16 @@ from lightproof.estimators.hard_lights import TOUCH, Bulb, Solids
 from lightproof.estimators.round_lights import Rounds
 from lightproof.estimators.sheet import Sheet, tidied
 from lightproof.estimators.sky_rows import SKIES, sky_rows
-from lightproof.estimators.soft_curves import above
+from lightproof.estimators.world import Item
 from lightproof.geometry import Cylinder, Disk, Polygon, Sphere
 from lightproof.scene import (
-    AreaLight,
     DirectionalLight,
     PlaneFilm,
     PointLight,
     PointsFilm,
     Scene,
-    Surface,
 )
 
-SOLID = AreaLight | Surface
 COARSE = 4  # nodes of a rule that is to shrink past a light's edges
 
 
@@ -47,28 +44,23 @@ class Term:
 
 def terms(scene: Scene) -> list[Term]:
     """One term for each polygon that shines, each point light and each beam, and one for all disks, spheres and skies."""
-    things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, SOLID) and not encloses(item)]
+    things = standing(scene)
     sheet = Sheet.of(scene.film) if isinstance(scene.film, PlaneFilm) else None
     bulbs = [light for light in scene.lights if isinstance(light, PointLight | DirectionalLight)]
     return [*soft(scene, things, sheet), *hard(scene, bulbs, things, sheet), *rounds(scene)]
 
 
-def soft(scene: Scene, things: list[SOLID], sheet: Sheet | None) -> Iterator[Term]:
-    flats = [thing for thing in things if isinstance(thing.shape, Polygon)]
-    reach = farthest(scene)
-    for lamp in flats:
+def soft(scene: Scene, things: list[Item], sheet: Sheet | None) -> Iterator[Term]:
+    flats = {thing.id: thing for thing in things if isinstance(thing.shape, Polygon)}
+    all_, planes, reach = solids(flats.values()), receiving_planes(scene), farthest(scene)
+    for lamp in flats.values():
         if lamp.radiance:
-            blockers = [thing.shape for thing in flats if thing is not lamp and stands_before(scene, thing.shape, lamp.shape)]
+            front = np.array(lamp.shape.vertices[0]), lamp.shape.normal
+            before = {owner for plane in planes for owner in between(all_, lamp.id, plane, front).owners}
+            blockers = [flat.shape for flat in flats.values() if flat.id in before]
             source = polygon_light(lamp.shape, lamp.radiance, blockers, reach)
             loops = [np.array(shape.vertices) for shape in (lamp.shape, *blockers)]
             yield Term(source, tidied(soft_curves.curves(sheet, loops[0], loops[1:]) if sheet else []), HIGHEST)
-
-
-def stands_before(scene: Scene, shape: Polygon, lamp: Polygon) -> bool:
-    """Whether any of a polygon lies in front of a light's plane and of one in which there are receivers, where they have any."""
-    corners, planes = np.array(shape.vertices), receiving_planes(scene)
-    receives = any(plane is None or len(above(corners, plane[1], plane[0])) for plane in planes)
-    return receives and len(above(corners, lamp.normal, np.array(lamp.vertices[0]))) > 0
 
 
 def farthest(scene: Scene) -> float:
@@ -81,7 +73,7 @@ def farthest(scene: Scene) -> float:
     return float(np.abs(scene.film.origin).max())
 
 
-def hard(scene: Scene, bulbs: list[PointLight | DirectionalLight], things: list[SOLID], sheet: Sheet | None) -> Iterator[Term]:
+def hard(scene: Scene, bulbs: list[PointLight | DirectionalLight], things: list[Item], sheet: Sheet | None) -> Iterator[Term]:
     shapes = [thing.shape for thing in things]
     for bulb in bulbs:
         beam = isinstance(bulb, DirectionalLight)
@@ -90,12 +82,12 @@ def hard(scene: Scene, bulbs: list[PointLight | DirectionalLight], things: list[
             position=tuple((-place if beam else place).tolist()),
             strength=float(bulb.irradiance if beam else bulb.intensity),
             reach=np.inf if beam else 1.0,
-            solids=solids(shapes, max(farthest(scene), 0.0 if beam else float(np.abs(place).max()))),
+            solids=obstacles(shapes, max(farthest(scene), 0.0 if beam else float(np.abs(place).max()))),
         )
         yield Term(source, tidied(hard_curves.curves(sheet, Rays(place, beam), shapes) if sheet else []), HIGHEST)
 
 
-def solids(shapes: list[geometry.Shape], reach: float) -> Solids:
+def obstacles(shapes: list[geometry.Shape], reach: float) -> Solids:
     """What may stand between a light and receivers with coordinates up to `reach` [m]."""
     loops = [np.array(shape.vertices) for shape in shapes if isinstance(shape, Polygon)]
     planes = [Plane.of(shape) for shape in shapes if isinstance(shape, Polygon)]
@@ -124,7 +116,7 @@ def round_row(shape: Disk | Sphere | Cylinder) -> list[float]:
 
 
 def rounds(scene: Scene) -> Iterator[Term]:
-    things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, SOLID) and item.radiance]
+    things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, Item) and item.radiance]
     if any(isinstance(light, SKIES) for light in scene.lights) or any(not isinstance(item.shape, Polygon) for item in things):
         whole = world.build(scene)
         shade = shades(scene, whole.items)

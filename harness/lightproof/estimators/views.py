@@ -9,9 +9,10 @@ import numpy as np
 from lightproof import geometry
 from lightproof import scene as scenes
 from lightproof.estimators import elements
-from lightproof.estimators.blockers import Plane, plane_of, reaches
+from lightproof.estimators.blockers import Plane, plane_of
+from lightproof.estimators.extents import reaching
 from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts
-from lightproof.estimators.world import PERSPECTIVE, film_rows
+from lightproof.estimators.world import PERSPECTIVE, build, film_rows
 from lightproof.scene import CameraFilm, Scene
 
 COVERS = {
@@ -58,10 +59,14 @@ def looked_at(scene: Scene, surface: scenes.Surface, piece: Flat | Sphere) -> Vi
     """The view where every pixel sees nothing but this piece of this surface."""
     if isinstance(piece, Sphere) or not surface.reflectance or surface.radiance:
         return None
-    others = [other for item in (*scene.lights, *scene.surfaces) if hasattr(item, "shape") for other in parts(item.shape)]
     walls = pyramid(scene.film, piece)
-    alone = walls and all(any(not reaches(other, *wall) for wall in walls) for other in others)
-    return View(*patches(scene.film, piece), surface.reflectance / np.pi) if alone else None
+    return View(*patches(scene.film, piece), surface.reflectance / np.pi) if walls and not reached(scene, walls) else None
+
+
+def reached(scene: Scene, walls: list[Plane]) -> bool:
+    """Whether anything of the scene may lie in front of all of some planes."""
+    items = build(scene).items
+    return bool(np.all([reaching(items, *wall) for wall in walls], axis=0).any())
 
 
 def pyramid(film: CameraFilm, piece: Flat) -> list[Plane]:
