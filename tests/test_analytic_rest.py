@@ -90,6 +90,14 @@ def test_a_look_around_agrees_with_closed_forms():
         np.testing.assert_allclose(film(before), film(alone), rtol=POINTS)
 
 
+@pytest.mark.parametrize("name", ["square-light", "disk-light", "sphere-light", "disk-blocker"])
+def test_a_cylinder_that_stands_before_nothing_changes_nothing(name):
+    table = suite.default().scene(name).to_table()
+    tube = {"type": "cylinder", "base": [0, 0, -3], "axis": [0, 0, 1], "height": 1, "radius": 0.3}
+    below = {**table, "surface": [*table.get("surface", []), {"id": "tube", "reflectance": 0.5, "shape": tube}]}
+    np.testing.assert_array_equal(film(from_table(below, "below"), 4), film(from_table(table, "alone"), 4))
+
+
 def test_what_a_ball_hides_of_a_sky():
     """A uniform sky, a ball of half-angle a above: pi L cos^2(a) is left of it."""
     where = points([[0.3, -0.2, 0.1]], [UP])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -118,9 +118,17 @@ def round_row(shape: Disk | Sphere | Cylinder) -> list[float]:
 def rounds(scene: Scene) -> Iterator[Term]:
     things = [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, Item) and item.radiance]
     if any(isinstance(light, SKIES) for light in scene.lights) or any(not isinstance(item.shape, Polygon) for item in things):
-        whole = world.build(scene)
-        shade = shades(scene, whole.items)
+        seen = without_tubes(scene)
+        whole = world.build(seen)
+        shade = shades(seen, whole.items)
         yield Term(Rounds(whole.items, sky_rows(scene), shade), tidied([]), COARSE if (shade >= 0).any() else HIGHEST)
+
+
+def without_tubes(scene: Scene) -> Scene:
+    """The scene without cylinders, which stand before no light that `terms` has."""
+    lights, surfaces = (tuple(item for item in items if not isinstance(getattr(item, "shape", None), Cylinder))
+                        for items in (scene.lights, scene.surfaces))
+    return replace(scene, lights=lights, surfaces=surfaces)
 
 
 def receivers(scene: Scene) -> np.ndarray:
