@@ -13,10 +13,9 @@ import numpy as np
 
 from ladders import DETERMINISTIC, ERRORS, Ladder, ladders
 from lightproof import suite
-from lightproof.ladder import Scale
-from lightproof.ladder import scale as unit_of
 from lightproof.references import ReferenceError
 from lightproof.renderers.registry import Entry
+from lightproof.scale import Scale
 from lightproof.scene import Scene
 from lightproof.scene_file import BASE
 from lightproof.trial import Result, Status
@@ -45,7 +44,7 @@ def measure(track: Track, add: Add, rounds: int, quick: bool, everything: bool =
             track.tell(str(error))
             continue
         track.tell(f"{NAME}: {scene.name}")
-        race(track, scene, unit_of(scene, reference), ours(float64=everything), add, rounds)
+        race(track, scene, Scale.of(scene, reference), ours(float64=everything), add, rounds)
 
 
 def is_asked(scene: Scene, everything: bool) -> bool:

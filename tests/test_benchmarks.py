@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lightproof import ladder, suite
+from lightproof import suite
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS
+from lightproof.scale import Scale
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "benchmarks"))
 
@@ -135,7 +136,7 @@ def test_grown_scenes_hold_what_they_say(points):
 
 
 def scale(scene):
-    return ladder.scale(scene, suite.default().reference(scene))
+    return Scale.of(scene, suite.default().reference(scene))
 
 
 @pytest.fixture

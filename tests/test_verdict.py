@@ -14,6 +14,7 @@ from cells import LIGHT, SCENE, error, noisy, reference, results, trial
 
 from lightproof import ladder, suite, verdict
 from lightproof.references import Reference
+from lightproof.scale import Scale
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status
 from lightproof.verdict import Outcome, Verdict
@@ -169,7 +170,7 @@ def test_intervals_are_those_of_the_rule():
 
 def test_elements_have_a_level_of_their_own():
     """Their quantile is that of 0.001 over 192 elements; tiles and mean keep that of 65 intervals even in a film of one tile."""
-    scale = ladder.scale(SCENE, reference())
+    scale = Scale.of(SCENE, reference())
     rung = ladder.climb(results({64: noisy(LIGHT, QUIET)}), SCENE, scale)[0]
     assert rung.quantile[:49] == pytest.approx(ladder.statistics.simultaneous_quantile(0.004, 65, 16))
     assert rung.quantile[49:] == pytest.approx(ladder.statistics.simultaneous_quantile(0.001, 192, 16))
@@ -200,7 +201,7 @@ def test_uncertainty_as_wide_as_the_tolerance_never_passes():
 def test_places_have_words(grid, index, words):
     """12 x 16 elements in 48 tiles of 2 x 2; 100 points in 50 tiles of 2; 5 points, each its own tile."""
     nothing = np.zeros(grid[0] * grid[1])
-    assert ladder.Scale(grid, nothing, nothing, nothing).place(index) == words
+    assert Scale(grid, nothing, nothing, nothing).place(index) == words
 
 
 # The scale of errors

@@ -18,6 +18,7 @@ from lightproof.references import Reference
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS, Entry
 from lightproof.runner import FACTOR, FIRST_SAMPLES, REPLICATES, Cell, Progress, Runner
+from lightproof.scale import Scale
 from lightproof.scene import Scene
 from lightproof.store import Store
 from lightproof.suite import Suite
@@ -152,7 +153,7 @@ def _deciding_step(judged: Verdict) -> int:
 def _variance(results: Sequence[Result], scene: Scene, reference: Reference, samples: int) -> tuple[float, float, int]:
     """Variance of one sample at a step as a fraction of the tolerance scale squared, its logarithm's standard error, and the
     films that they come from; zeros where the films have no noise."""
-    for rung in ladder.climb(results, scene, ladder.scale(scene, reference)):
+    for rung in ladder.climb(results, scene, Scale.of(scene, reference)):
         if rung.samples == samples and rung.complete and not rung.noiseless:
             return *statistics.variance_per_sample(rung.errors, samples), len(rung.films)
     return 0.0, 0.0, 0

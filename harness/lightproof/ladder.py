@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from lightproof import statistics
-from lightproof.references import Reference
+from lightproof.scale import Scale
 from lightproof.scene import Scene
 from lightproof.statistics import TILES
 from lightproof.trial import Result, Status
@@ -28,64 +28,6 @@ SETTLED = 0.1  # of its error: a film without noise that a step moved by less is
 SAME_FILM = 1e-5  # of the scale: films without noise that agree so well at N and 4N are one answer
 TRIPLES = 1600  # (scene, case, method) that a suite may hold before TILE_LEVEL has to shrink
 POWER = 3  # standard errors beyond q at which a bias is seen nearly always
-
-
-@dataclass(frozen=True)
-class Scale:
-    """What makes films of a scene comparable: its exact light (n,), the scale of its tolerance (n,), and the light's
-    uncertainty (n,), all in the film's unit."""
-
-    grid: tuple[int, int]
-    value: np.ndarray
-    uncertainty: np.ndarray
-    unit: np.ndarray
-
-    def pooled(self, elements: np.ndarray) -> np.ndarray:
-        """Elements (..., n) -> tiles, mean, elements (..., J + 1 + n)."""
-        tiles = statistics.tile_means(elements, self.grid)
-        return np.concatenate([tiles, elements.mean(axis=-1, keepdims=True), elements], axis=-1)
-
-    @cached_property
-    def tiles(self) -> int:
-        """Number of tiles J, at most TILES; also the index of the film's mean among the intervals."""
-        return int(np.prod([len(starts) for starts in statistics.tile_starts(self.grid)]))
-
-    def place(self, index: int) -> str:
-        """What an interval is about, in words."""
-        points = self.grid[0] == 1
-        if index == self.tiles:
-            return "the film's mean"
-        if index > self.tiles:
-            row, column = divmod(index - self.tiles - 1, self.grid[1])
-            return f"point {column}" if points else f"the element at row {row}, column {column}"
-        if points and self.tiles == self.grid[1]:
-            return f"point {index}"
-        rows, columns = statistics.tile_starts(self.grid)
-        top, left = divmod(index, len(columns))
-        bottom, right = (*rows[1:], self.grid[0])[top] - 1, (*columns[1:], self.grid[1])[left] - 1
-        across = f"{columns[left]}-{right}"
-        return f"the tile of points {across}" if points else f"the tile of rows {rows[top]}-{bottom}, columns {across}"
-
-    @cached_property
-    def lit(self) -> np.ndarray:
-        """Where light is due, (J + 1 + n,)."""
-        return self.pooled(self.value) > 0
-
-
-def scale(scene: Scene, reference: Reference) -> Scale:
-    """The scale of a scene's errors. Where each element has its own ("element"), one whose light is zero takes the film's
-    largest, as "max" would. Raises ValueError where every reference value is zero and the scene gives no number."""
-    largest = np.abs(reference.value).max()
-    match scene.tolerance_scale:
-        case "max":
-            unit = np.full(scene.size, largest)
-        case "element":
-            unit = np.where(reference.value == 0, largest, np.abs(reference.value))
-        case number:
-            unit = np.full(scene.size, number)
-    if not unit.all():
-        raise ValueError(f"the exact light of {scene.name} is zero everywhere; give tolerance_scale a number in the film's unit")
-    return Scale(scene.film.grid, reference.value, reference.uncertainty, unit)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from lightproof import diagnose, ladder
 from lightproof.finding import Finding, Outcome, find
 from lightproof.ladder import Rung
 from lightproof.references import Reference
+from lightproof.scale import Scale
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status, Trial
 
@@ -70,7 +71,7 @@ def judge(results: Sequence[Result], reference: Reference | None, scene: Scene, 
     if refusal:
         return Verdict(refusal.outcome, refusal.message, scene.tolerance)
     try:
-        scale = ladder.scale(scene, reference)
+        scale = Scale.of(scene, reference)
     except ValueError as error:
         return Verdict(Outcome.ERROR, str(error), scene.tolerance)
     rungs = ladder.climb(results, scene, scale, triples, replicates)

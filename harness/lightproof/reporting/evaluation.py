@@ -9,10 +9,11 @@ from functools import cached_property
 
 import numpy as np
 
-from lightproof import ladder, statistics
+from lightproof import statistics
 from lightproof.judging import Judge
 from lightproof.references import Reference
 from lightproof.renderers.registry import METHODS, OURS
+from lightproof.scale import Scale
 from lightproof.scene import Scene
 from lightproof.store import Run, Store
 from lightproof.suite import Suite
@@ -71,7 +72,7 @@ class Cell:
     @cached_property
     def scale(self) -> np.ndarray:
         """What errors are fractions of (n,), in the film's unit."""
-        return ladder.scale(self.scene, self.reference).unit
+        return Scale.of(self.scene, self.reference).unit
 
     @cached_property
     def error(self) -> np.ndarray:
