@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from lightproof.estimators import closed_forms
+from lightproof.estimators import closed_forms, gauss
 from lightproof.estimators.compiled import strict
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub, tangents
 
 ORDER = 16
-NODES, WEIGHTS = ((1 + np.polynomial.legendre.leggauss(ORDER)[0]) / 2, np.polynomial.legendre.leggauss(ORDER)[1] / 2)
+NODES, WEIGHTS = gauss.rule(ORDER)
 PIECES = 16  # of an arc, each with a Gauss rule
 
 

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from lightproof.estimators import gauss
 from lightproof.estimators.compiled import strict
 from lightproof.estimators.sources import irradiance, is_round
 from lightproof.estimators.tracing import vector
@@ -22,10 +23,7 @@ THIN = 1e-12  # of an element: an interval that is not worth a rule
 SLACK = 1e-9  # of an element: how far outside its box a curve still is
 STRIDES = 4  # parts of an interval in each of which a conic is crossed once at most
 STEPS = 60  # of a bisection
-NODES, WEIGHTS = np.zeros((HIGHEST + 1, HIGHEST)), np.zeros((HIGHEST + 1, HIGHEST))
-for _order in range(1, HIGHEST + 1):
-    NODES[_order, :_order], WEIGHTS[_order, :_order] = np.polynomial.legendre.leggauss(_order)
-NODES, WEIGHTS = (1 + NODES) / 2, WEIGHTS / 2
+NODES, WEIGHTS = gauss.table(HIGHEST)
 
 
 @strict

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
+from lightproof.estimators import gauss
 from lightproof.estimators.compiled import strict
 from lightproof.estimators.vectors import along, dot, norm
 
 SLIVER = 0.5  # rad above the horizon: a sphere that rises less is summed, for Snyder's terms cancel
-NODES, WEIGHTS = ((1 + np.polynomial.legendre.leggauss(20)[0]) / 2, np.polynomial.legendre.leggauss(20)[1] / 2)
+NODES, WEIGHTS = gauss.rule(20)
 
 
 @strict

@@ -9,18 +9,14 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from lightproof.estimators.compiled import strict
+from lightproof.estimators.gauss import rule
 
 CANCELLED = 0.01  # Lambert's sum below this share of its terms has lost two digits
 NEAR, FAR = 2.5, 30.0  # distances, in lengths of a cell, from which a rule is right to the last digits
 DEPTH = 64  # cells that wait
 S, T, A, B, LEVEL = range(5)
-RULES = tuple(
-    ((1 + np.polynomial.legendre.leggauss(order)[0]) / 2, np.polynomial.legendre.leggauss(order)[1] / 2) for order in (8, 4)
-)
-(CLOSE_NODES, CLOSE_WEIGHTS), (FAR_NODES, FAR_WEIGHTS) = RULES
+(CLOSE_NODES, CLOSE_WEIGHTS), (FAR_NODES, FAR_WEIGHTS) = rule(8), rule(4)
 
 
 @strict

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from lightproof.estimators import shafts
+from lightproof.estimators import gauss, shafts
 from lightproof.estimators.boxes import CENTER, FLAW, NORMAL, RADIANCE, SLIP, density, hull, part, reaches, spot
 from lightproof.estimators.compiled import strict
 from lightproof.estimators.ellipses import ORDERS, errors
@@ -19,10 +19,7 @@ from lightproof.estimators.shafts import HIDDEN, SEEN
 from lightproof.estimators.vectors import dot, norm, scaled, sub
 
 HIGHEST = ORDERS.max()
-NODES, WEIGHTS = np.zeros((HIGHEST + 1, HIGHEST)), np.zeros((HIGHEST + 1, HIGHEST))
-for _order in range(1, HIGHEST + 1):
-    NODES[_order, :_order], WEIGHTS[_order, :_order] = np.polynomial.legendre.leggauss(_order)
-NODES, WEIGHTS = NODES / 2, WEIGHTS / 2
+NODES, WEIGHTS = gauss.table(HIGHEST)
 DARK, UNDECIDED, SMOOTH = 0, 1, 2  # or above: SMOOTH + the number of the rule
 FINEST = SMOOTH + len(ORDERS) - 1
 
@@ -175,4 +172,4 @@ def over_light(box, light, x, orders_s, orders_t):
 def node(box, at, order, i):
     """Node i of a rule between two sides of a box, and its weight."""
     length = box[at + 1] - box[at]
-    return (box[at] + box[at + 1]) / 2 + NODES[order, i] * length, WEIGHTS[order, i] * length
+    return box[at] + NODES[order, i] * length, WEIGHTS[order, i] * length
