@@ -1,8 +1,8 @@
 """Time to a given error: every in-house method and every renderer at its best configuration, on the same scenes.
 
-Each climbs a ladder of samples until its error is small enough or a film takes too long; then all films of all ladders are
-rendered in turn, once a round, with a seed of their own each time. Errors are fractions of the tolerance scale, against the
-proven reference.
+Each climbs a ladder of samples until its error is small enough or the next film would take too long; then all films of all
+ladders are rendered in turn, once a round, with a seed of their own each time. Errors are fractions of the tolerance scale,
+against the proven reference.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
+from endings import FACTOR, Limit
 from ladders import DETERMINISTIC, ERRORS, Ladder, ladders
 from lightproof import suite
 from lightproof.references import ReferenceError
@@ -24,9 +25,8 @@ from rows import Estimate, Row
 
 NAME = "accuracy"
 TAGS = ("direct", "shadow", "furnace")
-FIRST, FACTOR, MOST = 1, 4, 4**15  # samples per element
-FEWEST, PATIENCE = 5, 5  # steps that tell how the error falls, and so many times the seconds that their films may take
-ENOUGH = 0.5 * min(ERRORS)
+FIRST, MOST = 1, 4**15  # samples per element
+STRETCH = 6  # times the seconds of a renderer's film, for that which may lead beyond one of the errors
 OURS_SHARE = 0.2  # of a renderer's time that a film of ours may take: there are many of them, and the best need far less
 CHOICE_SHARE = 0.2  # of a renderer's time that a film may take while its configuration is chosen
 CHOICE = 0.001  # error that a configuration is chosen for
@@ -54,8 +54,9 @@ def is_asked(scene: Scene, everything: bool) -> bool:
 
 def race(track: Track, scene: Scene, scale: Scale, own: Sequence[Entry], add: Add, rounds: int) -> None:
     """Every method's ladder, `own` and the best of each renderer's, then all their films in turn."""
-    climbs = [climb(track, scene, scale, entry, OURS_SHARE * track.seconds) for entry in track.there(own)]
-    climbs += [climb(track, scene, scale, entry, track.seconds) for entry in best(track, scene, scale, add)]
+    short, long = OURS_SHARE * track.seconds, track.seconds
+    climbs = [climb(track, scene, scale, entry, Limit(short, short)) for entry in track.there(own)]
+    climbs += [climb(track, scene, scale, entry, Limit(long, STRETCH * long)) for entry in best(track, scene, scale, add)]
     taken: dict[Film, list[Result]] = {}
     for films, results in climbs:
         add(failure(NAME, result) for result in results if result.status is not Status.OK)
@@ -69,20 +70,23 @@ def race(track: Track, scene: Scene, scale: Scale, own: Sequence[Entry], add: Ad
         add([*measured, *times(ladders(measured))])
 
 
-def climb(track: Track, scene: Scene, scale: Scale, entry: Entry, seconds: float) -> tuple[list[Film], list[Result]]:
-    """One film a step, until the error is small enough or the next film would take more than `seconds`."""
+def climb(track: Track, scene: Scene, scale: Scale, entry: Entry, limit: Limit) -> tuple[list[Film], list[Result]]:
+    """One film a step, until there are enough of them or the next would be beyond the `limit`."""
     films: list[Film] = []
     results: list[Result] = []
     samples = FIRST
     while samples <= MOST:
         films.append(Film(entry, scene, samples))
         results.append(track.render(films[-1], 0))
-        if results[-1].status is not Status.OK or rms(results[-1], scale) <= ENOUGH:
-            break
-        if FACTOR * results[-1].seconds["render"] > (seconds if len(films) >= FEWEST else PATIENCE * seconds):
+        if results[-1].status is not Status.OK or limit.ends(*steps(results, scale)):
             break
         samples *= FACTOR
     return films, results
+
+
+def steps(results: Iterable[Result], scale: Scale) -> tuple[list[float], list[float]]:
+    """Error and seconds of each film."""
+    return [rms(result, scale) for result in results], [result.seconds["render"] for result in results]
 
 
 def best(track: Track, scene: Scene, scale: Scale, add: Add) -> list[Entry]:
@@ -95,15 +99,17 @@ def choice(track: Track, scene: Scene, scale: Scale, configurations: Sequence[En
     """The best of a renderer's configurations; the only one without a try; None where there is none, or none that can."""
     if len(configurations) < 2:
         return configurations[0] if configurations else None
-    found: dict[Entry, float] = {}
+    found: dict[Entry, Ladder] = {}
+    seconds = CHOICE_SHARE * track.seconds
     for entry in configurations:
-        films, results = climb(track, scene, scale, entry, CHOICE_SHARE * track.seconds)
+        films, results = climb(track, scene, scale, entry, Limit(seconds, STRETCH * seconds))
         tried = [row for film, result in zip(films, results, strict=True) for row in rows(film, ok(result), scale)]
         for one in ladders(tried):
-            found[entry] = one.time_to(CHOICE)
-    chosen = min(found, key=found.get, default=None)
-    add(Row("choice", scene.name, entry.name, "rms error", CHOICE, "render", "s", estimate=Estimate(seconds),
-            note="chosen" if entry == chosen else "") for entry, seconds in found.items())
+            found[entry] = one
+    chosen = min(found, key=lambda entry: found[entry].time_to(CHOICE), default=None)
+    add(Row("choice", scene.name, entry.name, "rms error", CHOICE, "render", "s", estimate=Estimate(one.time_to(CHOICE)),
+            note=", ".join(filter(None, (one.kind(CHOICE), "chosen" if entry == chosen else ""))))
+        for entry, one in found.items())
     return chosen
 
 

@@ -19,7 +19,8 @@ EXACT, SQUARE = "analytic", "square-light"
 
 @dataclass(frozen=True)
 class Claim:
-    """A number, its `target` (None: it is only told), and whether that is the `least` or the `most` that it may be."""
+    """A number, its `target` (None: it is only told), and whether that is the `least` or the `most` that it may be; whether it
+    is `extrapolated`."""
 
     text: str
     scene: str
@@ -27,6 +28,12 @@ class Claim:
     target: float | None = None
     sense: str = LEAST
     note: str = ""
+    extrapolated: bool = False
+
+    @property
+    def sign(self) -> str:
+        """What stands before the number."""
+        return "≈ " if self.extrapolated else ""
 
     @property
     def outcome(self) -> str:
@@ -87,7 +94,8 @@ def race(scene: str, climbed: Sequence[Ladder], error: float, target: float, sam
         notes.append("both from the first sample on, so that only overheads are compared")
     if not sampling and best.method != EXACT and any(one.method == EXACT for one in ours):
         notes.append(f"{EXACT} is not the fastest")
-    return Claim(text, scene, measured, target, note="; ".join(notes))
+    return Claim(text, scene, measured, target, note="; ".join(notes),
+                 extrapolated=EXTRAPOLATED in (best.kind(error), other.kind(error)))
 
 
 def fastest(climbed: Iterable[Ladder], error: float) -> Ladder | None:

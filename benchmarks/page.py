@@ -12,6 +12,7 @@ import vl_convert
 from markupsafe import Markup
 
 from claims import LEAST, MET, MISSED, OPEN, UNMEASURED, Claim, claims
+from ladders import EXTRAPOLATED
 from lightproof.reporting import wording
 from rows import Row
 from sections import SECTIONS, interval
@@ -46,6 +47,7 @@ def answer(found: Sequence[Claim]) -> str:
 def cells(claim: Claim) -> list[str]:
     """A claim as the cells of a table: text, scene, target, measured, interval, outcome."""
     target = "" if claim.target is None else f"{'≥' if claim.sense == LEAST else '≤'} {wording.number(claim.target)}"
-    measured = "" if math.isnan(claim.measured.value) else wording.number(claim.measured.value)
+    known = f", {EXTRAPOLATED}" if claim.extrapolated else ""
+    measured = "" if math.isnan(claim.measured.value) else f"{claim.sign}{wording.number(claim.measured.value)}{known}"
     text = f"{claim.text} ({claim.note})" if claim.note else claim.text
     return [text, claim.scene, target, measured, interval(claim.measured), claim.outcome]

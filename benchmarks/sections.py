@@ -13,7 +13,7 @@ from lightproof.reporting import wording
 from powers import Power, fitted
 from rows import Estimate, Row
 
-SIGNS = {MEASURED: "", AT_MOST: "≤ ", EXTRAPOLATED: "~ ", NEVER: ""}
+SIGNS = {MEASURED: "", AT_MOST: "≤ ", EXTRAPOLATED: "≈ ", NEVER: ""}
 WHOLE = "the whole loop"
 COUNTED = ("compiled", "hits", "misses")
 
@@ -75,7 +75,8 @@ def accuracy(rows: Sequence[Row]) -> list[Part]:
 def _time(row: Row | None) -> str:
     if row is None or not math.isfinite(row.median):
         return "—" if row is None else "never"
-    return f"{SIGNS[row.note]}{wording.seconds(row.median)}{_span(*row.interval)}"
+    known = f", {EXTRAPOLATED}" if row.note == EXTRAPOLATED else ""
+    return f"{SIGNS[row.note]}{wording.seconds(row.median)}{known}{_span(*row.interval)}"
 
 
 def _span(low: float, high: float) -> str:
@@ -132,7 +133,7 @@ SECTIONS: dict[str, tuple[str, Callable[[Sequence[Row]], list[Part]]]] = {
         " film of more elements than the scene's own.", throughput),
     "accuracy": (
         "Render time of one film until its rms error is so many per cent of the tolerance scale, against the proven light."
-        " ≤: the first step of the ladder was better than that; ~: extrapolated by the slope of the last steps; never: the"
+        " ≤: the first step of the ladder was better than that; ≈: extrapolated by the slope of the last steps; never: the"
         " error has stopped falling.", accuracy),
     "choice": ("Configurations of renderers, tried on every scene; the best took part.", choice),
     "hardware": (

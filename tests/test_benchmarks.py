@@ -21,6 +21,7 @@ import operations
 import page
 import throughput
 from claims import MET, MISSED, OPEN, UNMEASURED, claims
+from endings import Limit
 from ladders import AT_MOST, EXTRAPOLATED, MEASURED, NEVER, Ladder
 from powers import fitted
 from race import Film, Track
@@ -96,6 +97,33 @@ def test_time_to_error_is_interpolated_extrapolated_or_never():
     assert [falling.time_to(error) for error in (0.01, 0.001, 0.0001)] == pytest.approx([4e-3, 0.4, 40])
     assert [falling.kind(error) for error in (0.5, 0.01, 0.001, 0.0001)] == [AT_MOST, MEASURED, MEASURED, EXTRAPOLATED]
     assert climbed(0.02, 0).kind(0.01) == NEVER and np.isinf(climbed(0.02, 0).time_to(0.01))
+
+
+@pytest.mark.parametrize(("errors", "seconds", "ends"), [
+    ([1e-3, 4e-5], 1e-3, False),  # one step below 5e-5 may be luck
+    ([4e-5, 6e-5], 1e-3, False),
+    ([4e-5, 3e-5], 1e-3, True),
+    ([1e-1] * 5, 0.2, True),  # the next film takes 0.8 s and leads nowhere
+    ([1e-1] * 5, 0.1, False),
+    ([1e-1] * 4, 0.2, False),  # too few steps to see how the error falls
+    ([1e-1] * 4, 0.7, True),
+    ([4e-3, 1.2e-3], 0.7, False),  # one film of 2.8 s leads beyond 1e-3
+    ([4e-3, 1.2e-3], 0.8, True),
+    ([0.5, 0.1, 2e-2, 4e-3, 1.2e-3], 0.7, False),
+    ([0.5, 0.1, 2e-2, 4e-3, 0.7e-3], 0.7, True),  # that film is behind it
+])
+def test_a_ladder_ends(errors, seconds, ends):
+    """A film may take 0.5 s, one that leads beyond an error of 1, 0.1 or 0.01 % 3 s, one of the first five steps 2.5 s."""
+    assert Limit(0.5, 3.0).ends(errors, [seconds] * len(errors)) is ends
+
+
+def test_what_is_extrapolated_is_marked():
+    """Renderer's errors 0.02 N^-1/2 end at N = 1,024: 0.1 % is measured, 0.01 % not; in the claims and in the tables."""
+    rows = [*timed("square-light", "mc-area", 1e-6, 0.02, exponent=-1), *timed("square-light", "cycles", 9e-4, 0.02)]
+    rows += accuracy.times(accuracy.ladders(rows))
+    html = page.render(rows, {})
+    assert ["extrapolated" in page.cells(claim)[3] for claim in claims(rows)] == [False, True]
+    assert page.cells(claims(rows)[1])[3].startswith("≈ ") and html.count(", extrapolated (") == 1
 
 
 def test_exponents_are_fitted_beside_an_overhead():
