@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -257,9 +259,94 @@ def test_sentences_say_where_each_method_breaks(evaluation):
     said = hard_findings.findings(group)
     assert said["off by more than 1 % at a distance to the lamp of 10⁴ m and more"] == ["far"]
     assert said["no systematic error of more than 1 %"] == ["exact", "noisy"]
-    blind, = (sentence for sentence, methods in said.items() if methods == ["blind"])
-    assert blind.startswith("blind to errors of more than 1 % at a distance to the lamp of 0.0001 m and less")
+    (blind,) = said["blind to errors of more than 1 % at a distance to the lamp of 0.0001 m and less: a single sample can weigh"
+                    " up to the share in brackets"]
+    assert blind.startswith("blind (9.8 × 10⁸ times the light at ")
     assert said["no light but NaN, first at distance to the lamp 0.001 m (point 3)"] == ["broken"]
+
+
+def judged_on(scenes: Sequence[Scene], *cells: Cell) -> Evaluation:
+    run = Run("run-1", "2026-01-02T03:04:05+00:00", "digest", "a machine", 2, 7, {}, "abc", {})
+    return Evaluation(run, tuple(scenes), cells)
+
+
+def said_of(evaluation: Evaluation) -> dict[str, list[str]]:
+    (group,) = hard.groups(hard.rows(evaluation))
+    return hard_findings.findings(group)
+
+
+def scattered(share: float | np.ndarray, method: str = "mc-area", scene: Scene = DISTANCE, **fields: object) -> Cell:
+    """16 films of the exact light with noise of a standard deviation of a share of it."""
+    value = CATALOGUE.reference(scene).value
+    return given(method, value * (1 + share * np.random.default_rng(4).normal(size=(16, len(value)))), scene, **fields)
+
+
+def test_a_method_with_much_scatter_is_not_called_sound():
+    """Its films differ by 40 % from 1 m on, and by a thousandth below: noise of its mean hides about 0.4 / 4 x 7.3."""
+    beyond = sweeps.values(DISTANCE) >= 1
+    said = said_of(judged_on([DISTANCE], scattered(np.where(beyond, 0.4, 0.001))))
+    (sentence, (label,)), = said.items()
+    assert sentence == ("blind to errors of more than 1 % at a distance to the lamp of 1 m and more: noise hides up to the share"
+                        " in brackets")
+    assert re.fullmatch(r"mc-area \((6|7|8|9|10)\d % at .*m\)", label)
+
+
+STRIPS = [CATALOGUE.scene(f"hard-aspect{case}") for case in ("", ":strip-1e4", ":strip-1e8")]
+
+
+def test_a_method_is_sound_only_where_every_case_was_measured():
+    """Of three cases of a sweep: one method has all, one lacks the last, one ends in an error there, one refuses it."""
+    trial = Trial(STRIPS[2].id, STRIPS[2].case, STRIPS[2].digest, "", 64, 0)
+    ended = {
+        "crashes": Result(replace(trial, method="crashes"), Status.ERROR, message="it wrote nothing"),
+        "refuses": Result(replace(trial, method="refuses"), Status.UNSUPPORTED, message="too thin"),
+    }
+    exact = CATALOGUE.reference(STRIPS[2])
+    last = [Cell(STRIPS[2], name, (result,), exact, verdict.judge([result], exact, STRIPS[2])) for name, result in ended.items()]
+    measured = [scattered(1e-4, method, scene) for scene in STRIPS[:2] for method in ("all", "lacks", *ended)]
+    said = said_of(judged_on(STRIPS, *measured, scattered(1e-4, "all", STRIPS[2]), *last))
+    assert said == {
+        "nothing but an error on hard-aspect:strip-1e8": ["crashes"],
+        "not reached by this run on hard-aspect:strip-1e8": ["lacks"],
+        "no systematic error of more than 1 %": ["all", "refuses"],
+        "no systematic error of more than 1 % elsewhere": ["crashes", "lacks"],
+    }
+
+
+def test_of_a_single_film_nobody_knows_the_noise():
+    said = said_of(judged_on([DISTANCE], given("once", EXACT.value[None])))
+    assert "no systematic error of more than 1 %" not in said
+    assert "a single film, of unknown noise," in said
+
+
+def promise_of(word: str, evaluation: Evaluation) -> hard_findings.Promise:
+    (found,) = (promise for promise in hard_findings.promises(hard.rows(evaluation)) if word in promise.text)
+    return found
+
+
+@pytest.mark.parametrize(("share", "loss", "kept", "said"), [
+    (1e-2, 0.0, None, "in 0 of 1 squares; in the median square the smallest error that could have been seen is 2e−2"),
+    (1e-7, 0.0, True, "in 1 of 1 squares; in the median square the smallest error that could have been seen is "),
+    (1e-7, 1e-4, False, "the largest that noise does not explain is 1e−4, by mc-area on hard-distance at distance to the lamp"),
+])
+def test_a_promise_that_noise_hides_is_open(share, loss, kept, said):
+    """mc-area, in float32: noise of a hundredth could hide 1e-5, of 1e-7 shows that there is none, or that there is 1e-4."""
+    cell = scattered(share)
+    lossy = given("mc-area", np.array([result.film for result in cell.results]) - loss * EXACT.value)
+    found = promise_of("float32", judged_on([DISTANCE], lossy))
+    assert found.kept is kept
+    assert said in found.text
+
+
+def test_what_analytic_was_not_asked_keeps_its_promise_open():
+    exact = given("analytic", CATALOGUE.reference(STRIPS[0]).value[None], STRIPS[0], deterministic=True)
+    assert promise_of("analytic", judged_on(STRIPS[:1], exact)).kept is True
+    assert promise_of("analytic", judged_on(STRIPS[:2], exact, scattered(1e-4, "mc-area", STRIPS[1]))).kept is None
+
+
+def test_an_open_promise_is_shown_as_open():
+    html = hard_page.render(judged_on([DISTANCE], scattered(1e-2)), page.environment(), "")
+    assert 'badge undecided"><span aria-hidden="true">?</span> open' in html
 
 
 def test_the_page_shows_all_of_it(evaluation):

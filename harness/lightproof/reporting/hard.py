@@ -46,7 +46,12 @@ class Deviation:
     @property
     def certain(self) -> bool:
         """Whether the method has no noise, or shows none for want of films."""
-        return self.cell.final[0].deterministic or len(self.cell.final) == 1
+        return self.cell.final[0].deterministic or self.alone
+
+    @property
+    def alone(self) -> bool:
+        """Whether there is a single film where others would differ."""
+        return not self.cell.final[0].deterministic and len(self.cell.final) == 1
 
     @cached_property
     def standard_error(self) -> np.ndarray:
