@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from endings import FACTOR, Limit
-from ladders import DETERMINISTIC, ERRORS, Ladder, ladders
+from ladders import DETERMINISTIC, ERRORS, SINGLE, Ladder, ladders
 from lightproof import suite
 from lightproof.references import ReferenceError
 from lightproof.renderers.registry import Entry
@@ -121,9 +121,10 @@ def ok(result: Result) -> list[Result]:
 def rows(film: Film, results: Sequence[Result], scale: Scale) -> list[Row]:
     """Render time and error of one film in every round."""
     about = (NAME, film.scene.name, film.entry.name, "samples", film.samples)
-    note = DETERMINISTIC if any(result.deterministic for result in results) else ""
-    return [Row(*about, "render", "s", tuple(result.seconds["render"] for result in results)),
-            Row(*about, "error", "1", tuple(rms(result, scale) for result in results), note)]
+    single = SINGLE if all(result.samples == 1 for result in results) else ""
+    noiseless = DETERMINISTIC if any(result.deterministic for result in results) else ""
+    return [Row(*about, "render", "s", tuple(result.seconds["render"] for result in results), single),
+            Row(*about, "error", "1", tuple(rms(result, scale) for result in results), noiseless)]
 
 
 def rms(result: Result, scale: Scale) -> float:

@@ -14,13 +14,14 @@ from rows import Estimate, Row
 ERRORS = (0.01, 0.001, 0.0001)
 LAST = 4  # steps of the ladder that tell how the error falls beyond it
 FLATTEST = -0.1  # d log error / d log samples: an error that falls no faster has a floor
-DETERMINISTIC = "no noise"  # what the rows of such a method note
-MEASURED, AT_MOST, EXTRAPOLATED, NEVER = "", "at most", "extrapolated", "never"
+DETERMINISTIC, SINGLE = "no noise", "one sample"  # what rows note: of such a method, of films that can take no fewer samples
+MEASURED, SHORTEST, AT_MOST, EXTRAPOLATED, NEVER = "", "with one sample", "at most", "extrapolated", "never"
 
 
 @dataclass(frozen=True)
 class Ladder:
-    """`seconds` and rms `errors` (R, S) of films in R rounds at `samples` (S,) per element."""
+    """`seconds` and rms `errors` (R, S) of films in R rounds at `samples` (S,) per element; `single`: the first step really took
+    one sample, so that there is no shorter film."""
 
     scene: str
     method: str
@@ -28,6 +29,7 @@ class Ladder:
     seconds: np.ndarray
     errors: np.ndarray
     deterministic: bool
+    single: bool = False
 
     @property
     def rounds(self) -> np.ndarray:
@@ -49,7 +51,7 @@ class Ladder:
         """How `time_to` is known."""
         errors = self.points(self.rounds)[1]
         if errors[0] <= error:
-            return AT_MOST
+            return SHORTEST if self.single else AT_MOST
         if errors.min() <= error:
             return MEASURED
         return EXTRAPOLATED if np.isfinite(self.time_to(error)) else NEVER
@@ -77,4 +79,5 @@ def _ladder(scene: str, method: str, render: dict[float, Row], error: dict[float
     samples = sorted(set(render) & set(error))
     rounds = min(len(render[step].each) for step in samples)
     columns = [np.array([kind[step].each[:rounds] for step in samples]).T for kind in (render, error)]
-    return Ladder(scene, method, np.array(samples), *columns, error[samples[0]].note == DETERMINISTIC)
+    first = samples[0]
+    return Ladder(scene, method, np.array(samples), *columns, error[first].note == DETERMINISTIC, render[first].note == SINGLE)

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import plots
-from ladders import AT_MOST, ERRORS, EXTRAPOLATED, MEASURED, NEVER, ladders
+from ladders import AT_MOST, ERRORS, EXTRAPOLATED, MEASURED, NEVER, SHORTEST, ladders
 from lightproof.reporting import wording
 from powers import Power, fitted
 from rows import Estimate, Row
 
-SIGNS = {MEASURED: "", AT_MOST: "≤ ", EXTRAPOLATED: "≈ ", NEVER: ""}
+SIGNS = {MEASURED: "", SHORTEST: "", AT_MOST: "≤ ", EXTRAPOLATED: "≈ ", NEVER: ""}
 WHOLE = "the whole loop"
 COUNTED = ("compiled", "hits", "misses")
 
@@ -133,7 +133,7 @@ SECTIONS: dict[str, tuple[str, Callable[[Sequence[Row]], list[Part]]]] = {
         " film of more elements than the scene's own.", throughput),
     "accuracy": (
         "Render time of one film until its rms error is so many per cent of the tolerance scale, against the proven light."
-        " ≤: the first step of the ladder was better than that; ≈: extrapolated by the slope of the last steps; never: the"
+        " ≤: the first step of the ladder, which took more than one sample, was better than that; ≈: extrapolated by the slope of the last steps; never: the"
         " error has stopped falling.", accuracy),
     "choice": ("Configurations of renderers, tried on every scene; the best took part.", choice),
     "hardware": (

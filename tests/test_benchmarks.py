@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ import page
 import throughput
 from claims import MET, MISSED, OPEN, UNMEASURED, claims
 from endings import Limit
-from ladders import AT_MOST, EXTRAPOLATED, MEASURED, NEVER, Ladder
+from ladders import AT_MOST, EXTRAPOLATED, MEASURED, NEVER, SHORTEST, SINGLE, Ladder
 from powers import fitted
 from race import Film, Track
 from rows import Estimate, Row, Table, read
@@ -115,6 +116,18 @@ def test_time_to_error_is_interpolated_extrapolated_or_never():
 def test_a_ladder_ends(errors, seconds, ends):
     """A film may take 0.5 s, one that leads beyond an error of 1, 0.1 or 0.01 % 3 s, one of the first five steps 2.5 s."""
     assert Limit(0.5, 3.0).ends(errors, [seconds] * len(errors)) is ends
+
+
+@pytest.mark.parametrize(("slower", "note", "outcome", "sign"), [
+    (200, "", OPEN, "≤ "), (200, SINGLE, MET, ""), (20, "", MISSED, "≤ "), (20, SINGLE, MISSED, "")])
+def test_a_renderer_that_may_have_been_sooner_leaves_its_claim_open(slower, note, outcome, sign):
+    """Its first film is better than 0.1 %: 200 times as slow as ours is not known to be 100 times, but where that film took one
+    sample, the least; 20 times is too few in any case."""
+    rows = [*timed("square-light", "mc-area", 1e-6, 1e-4), *timed("square-light", "cycles", slower * 1e-6, 1e-4)]
+    rows = [replace(row, note=note) if row.phase == "render" and row.value == 1 else row for row in rows]
+    claim = claims(rows)[0]
+    assert (claim.outcome, claim.sign, claim.measured.value) == (outcome, sign, pytest.approx(slower))
+    assert accuracy.ladders(rows)[1].kind(0.001) == (SHORTEST if note else AT_MOST)
 
 
 def test_what_is_extrapolated_is_marked():
