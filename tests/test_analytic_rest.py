@@ -92,6 +92,7 @@ def test_a_look_around_agrees_with_closed_forms():
 
 @pytest.mark.parametrize("name", ["square-light", "disk-light", "sphere-light", "disk-blocker"])
 def test_a_cylinder_that_stands_before_nothing_changes_nothing(name):
+    """Below the floor, to the last bit."""
     table = suite.default().scene(name).to_table()
     tube = {"type": "cylinder", "base": [0, 0, -3], "axis": [0, 0, 1], "height": 1, "radius": 0.3}
     below = {**table, "surface": [*table.get("surface", []), {"id": "tube", "reflectance": 0.5, "shape": tube}]}

@@ -6,7 +6,7 @@ import numpy as np
 
 from lightproof import scene as scenes
 from lightproof.estimators import elements
-from lightproof.estimators.blockers import Plane, between, plane_of, solids, standing
+from lightproof.estimators.blockers import Casters, Plane, between, plane_of, standing
 from lightproof.estimators.shapes import Disk, Flat, Sphere, parts, support
 from lightproof.estimators.world import CENTER, DISK, KIND, V
 from lightproof.scene import CameraFilm, Scene
@@ -38,11 +38,11 @@ def disks_unsupported(light: Disk, blocker: Disk, plane: Plane | None, name: str
 
 def shades(scene: Scene, items: np.ndarray) -> np.ndarray:
     """For every item (m,) the index of the disk that stands before it where it is a disk that shines, else -1."""
-    shade, all_, planes = np.full(len(items), -1), solids(standing(scene)), receiving_planes(scene)
+    shade, casters, planes = np.full(len(items), -1), Casters.of(standing(scene)), receiving_planes(scene)
     for item in (*scene.lights, *scene.surfaces):
         for light in filter(lambda piece: isinstance(piece, Disk), emitting_pieces(item)):
             for plane in planes:
-                for blocker in between(all_, item.id, plane_of(light), plane).pieces:
+                for blocker in between(casters, item.id, plane_of(light), plane).pieces:
                     shade[row_of(light, items)] = row_of(blocker, items)
     return shade
 

@@ -25,12 +25,19 @@ INSIDE = 0.9999  # of a sphere's radius squared: what is nearer to its centre li
 Plane = tuple[np.ndarray, np.ndarray]  # a point and a unit normal
 
 
-class Solids(NamedTuple):
+class Casters(NamedTuple):
     """Pieces that can cast a shadow, (m,): the id of what each belongs to, and its row of a `World` (m, WIDTH)."""
 
     owners: np.ndarray
     pieces: tuple[Flat | Sphere, ...]
     rows: np.ndarray
+
+    @classmethod
+    def of(cls, items: Iterable[Item]) -> Casters:
+        """The pieces of lights and surfaces. Raises TypeError on a cylinder."""
+        owned = [(item, piece) for item in items for piece in parts(item.shape)]
+        rows = [item_row(item, piece, sample_surfaces=False) for item, piece in owned]
+        return cls(np.array([item.id for item, _ in owned]), tuple(piece for _, piece in owned), np.reshape(rows, (-1, WIDTH)))
 
 
 def standing(scene: Scene) -> list[Item]:
@@ -38,19 +45,12 @@ def standing(scene: Scene) -> list[Item]:
     return [item for item in (*scene.lights, *scene.surfaces) if isinstance(item, Item) and not encloses(item)]
 
 
-def solids(items: Iterable[Item]) -> Solids:
-    """The pieces of lights and surfaces. Raises TypeError on a cylinder."""
-    owned = [(item, piece) for item in items for piece in parts(item.shape)]
-    rows = [item_row(item, piece, sample_surfaces=False) for item, piece in owned]
-    return Solids(np.array([item.id for item, _ in owned]), tuple(piece for _, piece in owned), np.reshape(rows, (-1, WIDTH)))
-
-
-def between(all_: Solids, own: str, *planes: Plane | None) -> Solids:
-    """What of `all_` can cast a shadow of a piece of the light or surface `own`: the others that lie in front of the `planes`
+def between(casters: Casters, own: str, *planes: Plane | None) -> Casters:
+    """Those that can cast a shadow of a piece of the light or surface `own`: the others that lie in front of the `planes`
     of that piece and of what receives, None for what lies in none."""
-    before = [reaching(all_.rows, *plane) for plane in planes if plane is not None]
-    kept = np.flatnonzero(np.all([all_.owners != own, *before], axis=0))
-    return Solids(all_.owners[kept], tuple(all_.pieces[k] for k in kept), all_.rows[kept])
+    before = [reaching(casters.rows, *plane) for plane in planes if plane is not None]
+    kept = np.flatnonzero(np.all([casters.owners != own, *before], axis=0))
+    return Casters(casters.owners[kept], tuple(casters.pieces[k] for k in kept), casters.rows[kept])
 
 
 def plane_of(piece: Flat | Sphere) -> Plane | None:

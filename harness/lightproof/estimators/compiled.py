@@ -15,6 +15,7 @@ from pathlib import Path
 
 import llvmlite
 import numba
+import numpy as np
 from numba import njit
 
 SOURCES = Path(__file__).parent
@@ -29,8 +30,8 @@ fast = njit(fastmath=FAST, error_model="numpy")
 
 
 def digest(folder: Path) -> str:
-    """SHA-256 of every Python source in `folder` (names and bytes) and of the versions that compile them."""
-    state = hashlib.sha256(repr((sys.version, numba.__version__, llvmlite.__version__)).encode())
+    """SHA-256 of every Python source in `folder` (names and bytes) and of the versions that compile them and their constants."""
+    state = hashlib.sha256(repr((sys.version, numba.__version__, llvmlite.__version__, np.__version__)).encode())
     for path in sorted(folder.glob("*.py")):
         source = path.read_bytes()
         state.update(f"{path.name}:{len(source)}:".encode() + source)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lightproof.estimators import boxes, elements, lamps, shafts, shapes
-from lightproof.estimators.blockers import between, plane_of, solids, standing
+from lightproof.estimators.blockers import Casters, between, plane_of, standing
 from lightproof.estimators.boxes import place
 from lightproof.estimators.compiled import strict, strict_kernel
 from lightproof.estimators.estimator import Estimator, spread
@@ -131,8 +131,8 @@ class Cubature(Estimator):
     def build(self, scene: Scene) -> None:
         self.view = view(scene)
         glowing = lamps.glowing(scene)
-        all_ = solids(standing(scene))
-        before = [[piece for piece in between(all_, owner, plane_of(shape), self.view.plane).pieces if shapes.area(piece) > 0]
+        casters = Casters.of(standing(scene))
+        before = [[piece for piece in between(casters, owner, plane_of(shape), self.view.plane).pieces if shapes.area(piece) > 0]
                   for owner, shape, _ in glowing]
         far = np.abs(np.array([*(shape.center for _, shape, _ in glowing), *self.view.receivers[:, elements.CENTER]])).max()
         self.lights = np.array([boxes.row(shape, radiance, far) for _, shape, radiance in glowing]).reshape(-1, boxes.WIDTH)

@@ -9,9 +9,12 @@ import numpy as np
 
 @cache
 def rule(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights (order,); the weights add up to 1."""
+    """Nodes and weights (order,), read-only; the weights add up to 1."""
     nodes, weights = np.polynomial.legendre.leggauss(order)
-    return (1 + nodes) / 2, weights / 2
+    found = (1 + nodes) / 2, weights / 2
+    for array in found:
+        array.setflags(write=False)
+    return found
 
 
 def table(highest: int) -> tuple[np.ndarray, np.ndarray]:

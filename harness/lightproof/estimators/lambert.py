@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import math
 
+from lightproof.estimators import gauss
 from lightproof.estimators.compiled import strict
-from lightproof.estimators.gauss import rule
 
 CANCELLED = 0.01  # Lambert's sum below this share of its terms has lost two digits
 NEAR, FAR = 2.5, 30.0  # distances, in lengths of a cell, from which a rule is right to the last digits
 DEPTH = 64  # cells that wait
 S, T, A, B, LEVEL = range(5)
-(CLOSE_NODES, CLOSE_WEIGHTS), (FAR_NODES, FAR_WEIGHTS) = rule(8), rule(4)
+(CLOSE_NODES, CLOSE_WEIGHTS), (FAR_NODES, FAR_WEIGHTS) = gauss.rule(8), gauss.rule(4)
 
 
 @strict
@@ -86,9 +86,9 @@ def triangle(h, cells):
         s, t = (cell[0, 0] + cell[1, 0] + cell[2, 0]) / 3, (cell[0, 1] + cell[1, 1] + cell[2, 1]) / 3
         distance = s * s + t * t + h * h
         if distance > FAR * FAR * length:
-            total += gauss(cell, h, FAR_NODES, FAR_WEIGHTS)
+            total += by_rule(cell, h, FAR_NODES, FAR_WEIGHTS)
         elif distance > NEAR * NEAR * length or waiting + 2 > len(cells):
-            total += gauss(cell, h, CLOSE_NODES, CLOSE_WEIGHTS)
+            total += by_rule(cell, h, CLOSE_NODES, CLOSE_WEIGHTS)
         else:
             halve(cells, waiting, longest)
             waiting += 2
@@ -121,7 +121,7 @@ def halve(cells, at, longest):
 
 
 @strict
-def gauss(cell, h, nodes, weights):
+def by_rule(cell, h, nodes, weights):
     """Gauss-Legendre over a triangle as the image of a square, one side of which shrinks to the first corner."""
     us, ut, ul = cell[1, 0] - cell[0, 0], cell[1, 1] - cell[0, 1], cell[1, 2] - cell[0, 2]
     vs, vt, vl = cell[2, 0] - cell[0, 0], cell[2, 1] - cell[0, 1], cell[2, 2] - cell[0, 2]

@@ -109,14 +109,13 @@ def needs_panorama(scene: Scene, thing: Thing, faced: list[Item]) -> bool:
     """Whether what shadows a light, or the light itself, has no closed form; `faced` may shadow some light."""
     if not isinstance(thing, SKIES | Item) or (isinstance(thing, Item) and not thing.radiance):
         return False
-    match getattr(thing, "shape", None):
-        case Polygon():
-            return bool(before(thing, [other for other in faced if not isinstance(other.shape, Polygon)]))
-        case Disk() as disk if len(shapes := before(thing, faced)) == 1 and isinstance(shapes[0], Disk):
-            return any(apart(disk, shapes[0], plane, thing.id) for plane in receiving_planes(scene))
-        case Cylinder():
-            return True
-    return bool(before(thing, faced))
+    shape = getattr(thing, "shape", None)
+    if isinstance(shape, Polygon):
+        faced = [other for other in faced if not isinstance(other.shape, Polygon)]
+    shapes = before(thing, faced)
+    if isinstance(shape, Disk) and len(shapes) == 1 and isinstance(shapes[0], Disk):
+        return any(apart(shape, shapes[0], plane, thing.id) for plane in receiving_planes(scene))
+    return isinstance(shape, Cylinder) or bool(shapes)
 
 
 def apart(light: Disk, blocker: Disk, plane: Plane | None, name: str) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from lightproof.estimators import crowd, lamps, skies, world
 from lightproof.estimators.aims import Aim
-from lightproof.estimators.blockers import Solids, between, plane_of, solids, standing
+from lightproof.estimators.blockers import Casters, between, plane_of, standing
 from lightproof.estimators.estimator import TASKS, spread
 from lightproof.estimators.kernel import estimate
 from lightproof.estimators.lamps import Beam, Lamp, Point
@@ -55,8 +55,8 @@ class Piece:
 def aimed(scene: Scene, view: View, kind: Callable[[Flat | Sphere, float], Source] = lamps.lamp) -> list[Piece]:
     """Every piece of every light, to be aimed at; `kind` makes the source of a shape and its radiance [W/(m2 sr)]."""
     owned = [(owner, kind(shape, radiance)) for owner, shape, radiance in lamps.glowing(scene)]
-    all_ = solids(standing(scene))
-    return [shadowed(all_, view, owner, source) for owner, source in (*owned, *lamps.bulbs(scene, reach(scene)))]
+    casters = Casters.of(standing(scene))
+    return [shadowed(casters, view, owner, source) for owner, source in (*owned, *lamps.bulbs(scene, reach(scene)))]
 
 
 def met(scene: Scene, view: View, kind: type[Uniform | Cosine]) -> list[Piece]:
@@ -65,8 +65,8 @@ def met(scene: Scene, view: View, kind: type[Uniform | Cosine]) -> list[Piece]:
     dome = skies.dome(scene, reach(scene))
     if dome:
         owned.append(("", kind(dome, 1.0)))
-    all_ = solids(standing(scene))
-    return [shadowed(all_, view, owner, source) for owner, source in owned]
+    casters = Casters.of(standing(scene))
+    return [shadowed(casters, view, owner, source) for owner, source in owned]
 
 
 def reach(scene: Scene) -> float:
@@ -74,10 +74,10 @@ def reach(scene: Scene) -> float:
     return REACH * world.build(scene).contact / world.CONTACT
 
 
-def shadowed(all_: Solids, view: View, owner: str, source: Source) -> Piece:
-    """A source of the light `owner` with what of `all_` can stand before it."""
+def shadowed(casters: Casters, view: View, owner: str, source: Source) -> Piece:
+    """A source of the light `owner` with what of `casters` can stand before it."""
     shape = getattr(source, "shape", getattr(source, "light", None))
-    blockers = between(all_, owner, plane_of(shape), view.plane)
+    blockers = between(casters, owner, plane_of(shape), view.plane)
     if len(blockers.pieces) > FEW:
         return Piece(source, source, blockers.rows.take(crowd.FIELDS, axis=1))
     return Piece(source, *levelled(source, blockers.pieces, view.plane))

@@ -11,7 +11,7 @@ import numpy as np
 from lightproof import geometry
 from lightproof.estimators import elements, hard_curves, soft_curves, world
 from lightproof.estimators.analytic_limits import receiving_planes, shades
-from lightproof.estimators.blockers import between, solids, standing
+from lightproof.estimators.blockers import Casters, between, standing
 from lightproof.estimators.cells import HIGHEST
 from lightproof.estimators.flats import Plane, polygon_light
 from lightproof.estimators.hard_curves import Rays
@@ -52,11 +52,11 @@ def terms(scene: Scene) -> list[Term]:
 
 def soft(scene: Scene, things: list[Item], sheet: Sheet | None) -> Iterator[Term]:
     flats = {thing.id: thing for thing in things if isinstance(thing.shape, Polygon)}
-    all_, planes, reach = solids(flats.values()), receiving_planes(scene), farthest(scene)
+    casters, planes, reach = Casters.of(flats.values()), receiving_planes(scene), farthest(scene)
     for lamp in flats.values():
         if lamp.radiance:
             front = np.array(lamp.shape.vertices[0]), lamp.shape.normal
-            before = {owner for plane in planes for owner in between(all_, lamp.id, plane, front).owners}
+            before = {owner for plane in planes for owner in between(casters, lamp.id, plane, front).owners}
             blockers = [flat.shape for flat in flats.values() if flat.id in before]
             source = polygon_light(lamp.shape, lamp.radiance, blockers, reach)
             loops = [np.array(shape.vertices) for shape in (lamp.shape, *blockers)]
