@@ -218,6 +218,46 @@ def test_spheres_are_sampled_uniformly_in_projected_solid_angle():
     assert found[:, 0] == pytest.approx(math.pi * sine**2 * axis[2], rel=1e-12)
 
 
+def spread_cap(ball, side: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Midpoints (side^2, 3) of a grid over the cap of a sphere that faces the receiver, the normals there, and the area of each
+    of its cells [m2]."""
+    center = np.array(ball.center)
+    rim = ball.radius / np.linalg.norm(center)
+    axis = -center / np.linalg.norm(center)
+    one = np.cross(axis, [1.0, 0, 0])
+    one /= np.linalg.norm(one)
+    down, turn = (np.ravel(grid) for grid in np.meshgrid(*2 * [(np.arange(side) + 0.5) / side], indexing="ij"))
+    height, angle = 1 - (1 - rim) * down, 2 * np.pi * turn
+    out = np.sqrt(1 - height**2)[:, None] * (np.cos(angle)[:, None] * one + np.sin(angle)[:, None] * np.cross(axis, one))
+    normals = height[:, None] * axis + out
+    return center + ball.radius * normals, normals, np.full(side**2, 2 * np.pi * ball.radius**2 * (1 - rim) / side**2)
+
+
+def cap_cell(ball, points: np.ndarray, bins: int) -> np.ndarray:
+    """Which of bins x bins cells of `spread_cap`'s grid each point lies in."""
+    height, turn = around((points - np.array(ball.center)) / ball.radius, -np.array(ball.center))
+    rim = ball.radius / np.linalg.norm(ball.center)
+    return grid_cell((1 - height) / (1 - rim), turn, bins)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_mixture_is_sampled_by_its_density(name):
+    """Counts in 8 x 8 cells of the light, and of directions that miss it, against the integral over each cell of
+    (1/A + cos(theta_x) cos(theta_y)/(pi r^2))/2 per area, of a sphere over the cap that faces the receiver."""
+    shape = SHAPES[name]
+    if isinstance(shape, shapes.Sphere):
+        (points, normals, area), place = spread_cap(shape, 800), cap_cell
+    else:
+        (points, area), place = spread(shape, 800), cell
+        normals = np.broadcast_to(shape.normal, points.shape)
+    r = np.linalg.norm(points, axis=1)
+    by_cosine = area * np.maximum(points[:, 2], 0) * -(points * normals).sum(axis=1) / (np.pi * r**4)
+    expected = np.bincount(place(shape, points, 8), (area / area.sum() + by_cosine) / 2, minlength=64)
+    found = sampled(mixed.Mixed(*subtending(shape)), blocks=64)
+    cells = np.where(found[:, 0] > 0, place(shape, found[:, 1:], 8), 64)
+    assert p_of(cells, np.append(expected, 1 - expected.sum())) > RARE
+
+
 @pytest.mark.parametrize("name", SHAPES)
 def test_mixture_has_a_mean_and_a_bound(name):
     """What the draws of area and cosine count: the same mean as directions into the light, none above 2 pi."""

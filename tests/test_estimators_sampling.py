@@ -9,11 +9,14 @@ import pytest
 from numba import njit
 from scipy import stats
 
+from lightproof import suite
 from lightproof.estimators import shapes
 from lightproof.estimators.directions import cosine_power
 from lightproof.estimators.lamps import arriving, faced, lamp, parameters
 from lightproof.estimators.lighting import spot_on_sphere
+from lightproof.estimators.meeting import Cosine, Uniform
 from lightproof.estimators.rng import TICK, block_keys, draws, stream, uniform
+from lightproof.estimators.skies import dome
 from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.world import SPHERE, WIDTH
 
@@ -137,7 +140,7 @@ def test_sphere_is_sampled_uniformly_over_the_cap_that_faces_the_receiver():
 
 
 def test_traced_sphere_is_sampled_uniformly_over_the_same_cap():
-    """The ray tracer's own sampler, same sphere."""
+    """The sampler of the Riemann sum that follows rays, same sphere."""
     center, radius = np.array([0.2, -0.3, 0.8]), 0.31
     row = np.zeros(WIDTH)
     row[0], row[1:4], row[19], row[22] = SPHERE, center, radius, 1
@@ -157,8 +160,34 @@ def cap_coordinates(normals: np.ndarray, center: np.ndarray, radius: float) -> n
     return np.clip(np.stack([height, angle], axis=1), 0, 1 - 1e-15)
 
 
+@njit
+def met_directions(source, draws, model):
+    """What each draw counts, and its direction: (n, 4)."""
+    out = np.empty((len(draws), 4))
+    seen = faced(source, (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), model)
+    zero = model - model
+    for i in range(len(draws)):
+        f, d = arriving(seen, (zero, zero, zero), draws[i, 0], draws[i, 1])
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = f, d[0], d[1], d[2]
+    return out
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64])
+@pytest.mark.parametrize(("kind", "power"), [(Uniform, 0), (Cosine, 1)], ids=["uniform", "cosine"])
+def test_hemispheres_are_sampled_by_their_density(kind, power, real):
+    """What mc-hemisphere and mc-cosine draw under a uniform sky: z of density ~ z^power, the turn uniform; every draw counts
+    cos(theta)/density, in either precision."""
+    draws = ((lattice_points(21, power, BLOCKS, BLOCK)[:, :2] - 0.5) / TICK).astype(real)
+    sky = dome(suite.default().scene("white-furnace-plane"), 1.0)
+    counted, *d = met_directions(kind(sky, 1.0), draws, real(1)).T
+    w = d / np.linalg.norm(d, axis=0)
+    turned = np.arctan2(w[1], w[0]) / (2 * np.pi) + 0.5
+    assert two_sided(p_uniform(np.clip(np.stack([w[2] ** (power + 1), turned], axis=1), 0, 1 - 1e-15), 16))
+    assert counted == pytest.approx(1.37 * np.pi * (1 if power else 2 * w[2]), rel=1e-6, abs=1e-6)
+
+
 @pytest.mark.parametrize("power", [0, 1], ids=["uniform", "cosine"])
-def test_directions_follow_their_density(power):
+def test_directions_of_rays_follow_their_density(power):
     """z of density ~ z^power has distribution z^(power + 1), the turn is uniform: all cells alike; unit length."""
     w = np.array([cosine_power(power, s, t) for s, t in uniforms(20, power, 20000, 2)])
     assert np.allclose(np.linalg.norm(w, axis=1), 1, atol=1e-14)

@@ -1,0 +1,40 @@
+"""Methods are free of bias on scenes of every kind that they take, and what is exactly dark stays dark.
+
+A nightly run judges every method on every case of every scene; here each composition of domain, points and tracing meets a
+lamp of each shape, a blocker that all but touches the floor, and a camera. Seeds are fixed.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+from test_estimators_domains import CATALOGUE, films, unbiased
+
+from lightproof.scale import Scale
+
+DIM = 0.02  # of the brightest tile
+SAMPLES, REPLICATES = 2048, 16
+GRAIN = 1 / (4 * SAMPLES)  # of a value: one sample of a tile of four elements, that Sobol points meet in one film of many
+SCENES = ("contact-shadow", "disk-blocker", "sphere-light", "square-light-seen")
+METHODS = (
+    "mc-area", "mc-area/jitter", "mc-area/lattice", "mc-area/sobol", "mc-hemisphere", "mc-cosine/sobol", "mc-solid-angle/lattice",
+    "mc-projected-solid-angle/sobol", "mc-mis/jitter", "path", "path/sobol", "path/no-next-event",
+)  # fmt: skip
+
+
+CELLS = [*product(METHODS, SCENES), ("path", "lit-floor-to-wall"), ("path/sobol", "lit-floor-to-wall")]
+
+
+@pytest.mark.parametrize(("method", "scene"), CELLS)
+def test_no_method_is_biased(method, scene):
+    """The means of tiles and of the film within chance of the exact light, but for tiles so dim that few samples meet any; where
+    none arrives, none in any film."""
+    scene = CATALOGUE.scene(scene)
+    scale = Scale.of(scene, CATALOGUE.reference(scene))
+    exact = scale.pooled(scale.value)[: scale.tiles + 1]
+    found = films(method, scene, SAMPLES, REPLICATES)
+    assert (found[:, scale.value == 0] == 0).all()
+    bright = np.flatnonzero(exact > DIM * exact.max())
+    assert unbiased(scale.pooled(found)[:, bright], exact[bright], GRAIN)
