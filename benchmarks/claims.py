@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from ladders import AT_MOST, EXTRAPOLATED, SHORTEST, Ladder, ladders
 from lightproof import suite
 from race import family, is_ours
-from ratios import over_rounds, ratio
+from ratios import difference, over_rounds, ratio
 from rows import Estimate, Row
 
 MET, MISSED, OPEN, UNMEASURED, TOLD = "met", "missed", "open", "not measured", ""
 LEAST, MOST = "at least", "at most"
 EXACT, SQUARE = "analytic", "square-light"
+FLAT = 1.0  # MB: of the samples that are tried, those of one element would be more, at a float32 each
 
 
 @dataclass(frozen=True)
@@ -132,11 +133,11 @@ def scaled(estimate: Estimate, factor: float) -> Estimate:
 
 
 def growth(rows: Sequence[Row]) -> list[Claim]:
-    """Memory at most samples over that at fewest; how many blockers were tried with success."""
+    """Memory that the most samples take beyond that of the fewest; how many blockers were tried with success."""
     memory = ends([row for row in rows if row.method == "mc-area" and row.phase == "memory" and row.parameter == "samples"])
     blockers = [row.value for row in rows if row.method == "mc-area" and row.parameter == "blockers" and row.each]
-    found = [Claim(f"memory of mc-area, {memory[1].value:.0f} samples over {memory[0].value:.0f}", memory[0].scene,
-                   ratio(memory[1].each, memory[0].each), 1.05, MOST)] if memory else []
+    found = [Claim(f"MB that {memory[1].value:,.0f} samples an element take beyond {memory[0].value:,.0f}, mc-area",
+                   memory[0].scene, difference(memory[1].each, memory[0].each), FLAT, MOST)] if memory else []
     most = Estimate(max(blockers, default=math.nan))
     return [*found, Claim("blockers that mc-area works with", "many-blockers", most, 100.0)]
 

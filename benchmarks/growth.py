@@ -1,7 +1,8 @@
 """How time grows with elements, samples, lights, blockers and threads, and whether memory grows with samples.
 
 Every method goes on until a film takes too long, or until it refuses. Lights and blockers are many small squares between the
-same floor and lamp, so that the scene stays what it is.
+same floor and lamp, so that the scene stays what it is. Samples have workers of their own: those of other parts hold some GB of
+compiled kernels, beside which a film is nothing.
 """
 
 from __future__ import annotations
@@ -46,8 +47,11 @@ class Point:
 def measure(track: Track, add: Add, rounds: int, quick: bool, tracks: dict[int, Track]) -> None:
     """Curve by curve; `tracks` has workers with other numbers of threads."""
     entries = track.there(METHODS[name] for name in SHARES)
-    for points in (elements(), samples(), lights(), blockers()):
-        curve(track, list(points)[: 2 if quick else None], entries, add, rounds)
+    few = slice(2 if quick else None)
+    with track.fresh() as empty:
+        curve(empty, list(samples())[few], empty.there(entries), add, rounds)
+    for points in (elements(), lights(), blockers()):
+        curve(track, list(points)[few], entries, add, rounds)
     for threads, other in tracks.items():
         point = Point("threads", threads, gridded([64, 48]), MORE_SAMPLES // (16 if quick else 1))
         curve(other, [point], other.there(entries), add, rounds)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -44,6 +45,12 @@ class Track:
         self._folder = folder
         self.left_out: dict[str, str] = {}
         self._told: set[str] = set()
+
+    @contextmanager
+    def fresh(self) -> Iterator[Track]:
+        """The same with workers that hold nothing yet."""
+        with Pool(self.threads) as pool:
+            yield Track(pool, self._folder, self.tell, self.seconds)
 
     def there(self, entries: Iterable[Entry]) -> list[Entry]:
         """Those of the methods that start; why the others do not is told once."""

@@ -1,4 +1,4 @@
-"""Ratios of what was measured in the same rounds, with intervals."""
+"""Ratios and differences of what was measured in the same rounds, with intervals."""
 
 from __future__ import annotations
 
@@ -27,8 +27,17 @@ def over_rounds(rounds: int, statistic: Callable[[np.ndarray], float]) -> Estima
 
 def ratio(above: Sequence[float], below: Sequence[float]) -> Estimate:
     """Median over median of two quantities measured in the same rounds; the rounds that only one of them has are left out."""
-    rounds = min(len(above), len(below))
+    return _compared(np.divide, above, below)
+
+
+def difference(more: Sequence[float], less: Sequence[float]) -> Estimate:
+    """Median less median of two quantities measured in the same rounds, likewise."""
+    return _compared(np.subtract, more, less)
+
+
+def _compared(how: Callable[[float, float], float], first: Sequence[float], second: Sequence[float]) -> Estimate:
+    rounds = min(len(first), len(second))
     if not rounds:
         return Estimate(np.nan)
-    a, b = np.array(above[:rounds]), np.array(below[:rounds])
-    return over_rounds(rounds, lambda chosen: np.median(a[chosen]) / np.median(b[chosen]))
+    a, b = np.array(first[:rounds]), np.array(second[:rounds])
+    return over_rounds(rounds, lambda chosen: how(np.median(a[chosen]), np.median(b[chosen])))

@@ -107,13 +107,21 @@ def growth(rows: Sequence[Row]) -> list[Part]:
         found = {method: fitted([row for row in here if row.method == method]) for method in methods}
         powers: dict[str, Power] = {method: power for method, power in found.items() if power}
         last = {(row.method, row.phase): row.median for row in rows if row.parameter == parameter and row.each}
+        memory = {method: _memory(rows, method, parameter) for method in powers}
         body = [[method, wording.number(power.exponent.value), interval(power.exponent),
-                 wording.seconds(power.overhead) if power.overhead else "", f"{wording.number(last[method, 'memory'])} MB",
+                 wording.seconds(power.overhead) if power.overhead else "", memory[method],
                  wording.seconds(last[method, "setup"])]
                 for method, power in powers.items()]
         parts.append(Part(f"Time against {parameter}", plots.curves(here, powers, methods) if powers else None,
-                          ("method", "exponent", "interval", "overhead", "memory at the end", "set-up at the end"), body))
+                          ("method", "exponent", "interval", "overhead", "memory", "set-up at the end"), body))
     return parts
+
+
+def _memory(rows: Sequence[Row], method: str, parameter: str) -> str:
+    """Of the least amount and of the greatest."""
+    found = sorted((row for row in rows if row.each and (row.method, row.parameter, row.phase) == (method, parameter, "memory")),
+                   key=lambda row: row.value)
+    return f"{found[0].median:.1f} to {found[-1].median:.1f} MB"
 
 
 def cache(rows: Sequence[Row]) -> list[Part]:
@@ -133,14 +141,17 @@ SECTIONS: dict[str, tuple[str, Callable[[Sequence[Row]], list[Part]]]] = {
         " film of more elements than the scene's own.", throughput),
     "accuracy": (
         "Render time of one film until its rms error is so many per cent of the tolerance scale, against the proven light."
-        " ≤: the first step of the ladder, which took more than one sample, was better than that; ≈: extrapolated by the slope of the last steps; never: the"
-        " error has stopped falling.", accuracy),
+        " ≤: the first step of the ladder, which took more than one sample, was better than that; ≈: extrapolated by the slope of"
+        " the last steps; never: the error has stopped falling.", accuracy),
     "choice": ("Configurations of renderers, tried on every scene; the best took part.", choice),
     "hardware": (
         "The multiply-add peak is measured on the same threads in the same rounds; a multiply-add counts as two operations.",
         hardware),
     "growth": (
-        "Lines are fitted: time = overhead + factor × amount ^ exponent. Lights have a fixed number of samples each.", growth),
+        "Lines are fitted: time = overhead + factor × amount ^ exponent. Lights have a fixed number of samples each."
+        " Memory is the largest that was resident in the method's process, which it shares with its family, while a film was"
+        " rendered, from the least amount to the greatest; processes that the other parts have used hold what they compiled,"
+        " but for samples they are fresh.", growth),
     "cache": (
         "Processes that start from nothing and find the compiled kernels on disk. The first kernel's time runs from the moment"
         " when numba is imported.", cache),

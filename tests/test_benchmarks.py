@@ -139,6 +139,14 @@ def test_what_is_extrapolated_is_marked():
     assert page.cells(claims(rows)[1])[3].startswith("≈ ") and html.count(", extrapolated (") == 1
 
 
+@pytest.mark.parametrize(("grown", "outcome"), [(0.2, MET), (16.8, MISSED)])
+def test_memory_that_grows_with_samples_is_seen(grown, outcome):
+    """Beside 180 MB of the process: 16.8 MB are one float32 for each of 4,194,304 samples, 9 % of them."""
+    each = {64: 180.0, 4194304: 180.0 + grown}
+    found = claims([Row("growth", "s", "mc-area", "samples", value, "memory", "MB", (mb,) * 3) for value, mb in each.items()])
+    assert (found[0].outcome, found[0].measured.value) == (outcome, pytest.approx(grown))
+
+
 def test_exponents_are_fitted_beside_an_overhead():
     """Seconds 1e-3 + 2e-7 x^1.5 over six decades."""
     rows = [Row("growth", "s", "m", "blockers", x, "render", "s", (1e-3 + 2e-7 * x**1.5,) * 3) for x in 10.0 ** np.arange(7)]
