@@ -17,7 +17,7 @@ from lightproof import scene_file, suite
 from lightproof.renderers.registry import METHODS, Entry
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status
-from race import Film, Track, failure
+from race import Film, Track, failure, race
 from rows import Row
 
 NAME = "growth"
@@ -29,6 +29,8 @@ ELEMENTS = ([1, 1], [4, 3], [16, 12], [64, 48], [256, 192], [1000, 1000])
 SAMPLES = tuple(4**power for power in range(3, 12))
 COUNTS = (1, 3, 10, 30, 100, 300, 1000)  # of lights, of blockers
 LONGEST = 4  # times what a renderer's film may take: a method that would take longer, in proportion, stops
+THREADS_GRID = [64, 48]
+THREADS_SAMPLES = {"mc-area": 2**18, "mc-area/sobol": 2**18, "analytic": 64, "mitsuba": 2048}  # of a film of some 0.2 s
 SIDE = 0.7  # of its place, of a small square
 
 Add = Callable[[Iterable[Row]], None]
@@ -52,9 +54,7 @@ def measure(track: Track, add: Add, rounds: int, quick: bool, tracks: dict[int, 
         curve(empty, list(samples())[few], empty.there(entries), add, rounds)
     for points in (elements(), lights(), blockers()):
         curve(track, list(points)[few], entries, add, rounds)
-    for threads, other in tracks.items():
-        point = Point("threads", threads, gridded([64, 48]), MORE_SAMPLES // (16 if quick else 1))
-        curve(other, [point], other.there(entries), add, rounds)
+    threads(tracks, entries, add, rounds, quick)
 
 
 def curve(track: Track, points: list[Point], entries: list[Entry], add: Add, rounds: int) -> None:
@@ -72,6 +72,24 @@ def curve(track: Track, points: list[Point], entries: list[Entry], add: Add, rou
             add(row for film, results in taken.items() for row in rows(point, film, results))
         longest = LONGEST * track.seconds * point.amount / following.amount
         running = [film.entry for film, results in taken.items() if results and results[-1].seconds["render"] < longest]
+
+
+def threads(tracks: dict[int, Track], entries: list[Entry], add: Add, rounds: int, quick: bool) -> None:
+    """Every method with every number of threads, in turn."""
+    taken: dict[tuple[Track, Film], list[Result]] = {}
+    for entry in entries:
+        film = Film(entry, gridded(THREADS_GRID), max(1, THREADS_SAMPLES[entry.name] // (64 if quick else 1)))
+        for track in tracks.values():
+            first = track.render(film, 0)
+            if first.status is Status.OK:
+                taken[track, film] = []
+            else:
+                add([failure(NAME, first)])
+    try:
+        race(taken, rounds)
+    finally:
+        for (track, film), results in taken.items():
+            add(rows(Point("threads", track.threads, film.scene, film.samples), film, results))
 
 
 def rows(point: Point, film: Film, results: list[Result]) -> list[Row]:

@@ -14,7 +14,7 @@ from rows import Estimate, Row
 ERRORS = (0.01, 0.001, 0.0001)
 LAST = 4  # steps of the ladder that tell how the error falls beyond it
 FLATTEST = -0.1  # d log error / d log samples: an error that falls no faster has a floor
-DETERMINISTIC, SINGLE = "no noise", "one sample"  # what rows note: of such a method, of films that can take no fewer samples
+DETERMINISTIC, SINGLE = "no noise", "one sample"  # what rows note: of such a method, of films that took no more
 MEASURED, SHORTEST, AT_MOST, EXTRAPOLATED, NEVER = "", "with one sample", "at most", "extrapolated", "never"
 
 

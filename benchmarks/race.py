@@ -77,16 +77,9 @@ class Track:
 
     def race(self, taken: Mapping[Film, list[Result]], rounds: int) -> None:
         """Every film once a round, in turn; the results are added to `taken`. One that fails has no further turn."""
-        running = list(taken)
-        for turn in range(1, rounds + 1):
-            for film in list(running):
-                result = self._steady(film, turn)
-                if result.status is Status.OK:
-                    taken[film].append(result)
-                else:
-                    running.remove(film)
+        race({(self, film): results for film, results in taken.items()}, rounds)
 
-    def _steady(self, film: Film, turn: int) -> Result:
+    def steady(self, film: Film, turn: int) -> Result:
         """The film of a round. A short one takes the median time of a few, for what rendered before has emptied the caches."""
         result = self.render(film, turn)
         if result.status is not Status.OK or result.seconds["render"] > SHORT:
@@ -99,6 +92,19 @@ class Track:
         if message not in self._told:
             self._told.add(message)
             self.tell(message)
+
+
+def race(taken: Mapping[tuple[Track, Film], list[Result]], rounds: int) -> None:
+    """Every film once a round, in turn, each on its track; the results are added to `taken`. One that fails has no further
+    turn."""
+    running = dict(taken)
+    for turn in range(1, rounds + 1):
+        for (track, film), results in list(running.items()):
+            result = track.steady(film, turn)
+            if result.status is Status.OK:
+                results.append(result)
+            else:
+                del running[track, film]
 
 
 def ours(float64: bool = False) -> list[Entry]:

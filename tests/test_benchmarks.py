@@ -13,6 +13,7 @@ from lightproof import suite
 from lightproof.renderers.pool import Pool
 from lightproof.renderers.registry import METHODS
 from lightproof.scale import Scale
+from lightproof.trial import Result, Status
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "benchmarks"))
 
@@ -25,7 +26,7 @@ from claims import MET, MISSED, OPEN, UNMEASURED, claims
 from endings import Limit
 from ladders import AT_MOST, EXTRAPOLATED, MEASURED, NEVER, SHORTEST, SINGLE, Ladder
 from powers import fitted
-from race import Film, Track
+from race import Film, Track, race
 from rows import Estimate, Row, Table, read
 
 SAMPLES = 4.0 ** np.arange(6)
@@ -207,6 +208,24 @@ def test_page_from_a_tiny_measurement(track, monkeypatch):
     assert len(errors) == 5 and errors[0] > 4 * errors[-1] > 0
     html = page.render(rows, {"Machine": "<here>"})
     assert "point-light" in html and "&lt;here&gt;" in html and 'src="' not in html.split("<script>")[0]
+
+
+def test_tracks_take_turns(track, monkeypatch):
+    """Two tracks, two films, one of which fails on the second track in the second round: A B A B, and no third turn for it."""
+    turns, scene = [], suite.default().scene("point-light")
+    films = [Film(METHODS[name], scene, 1) for name in ("mc-area", "analytic")]
+
+    def steady(self, film, turn):
+        turns.append(("one" if self is track else "two", film.entry.name, turn))
+        return Result(None, Status.ERROR if turns[-1] == ("two", "analytic", 2) else Status.OK)
+
+    monkeypatch.setattr(Track, "steady", steady)
+    with track.fresh() as other:
+        taken = {(lane, film): [] for film in films for lane in (track, other)}
+        race(taken, rounds=3)
+    order = [("one", "mc-area"), ("two", "mc-area"), ("one", "analytic"), ("two", "analytic")]
+    assert turns == [(*pair, turn) for turn in (1, 2, 3) for pair in order[: 3 if turn == 3 else 4]]
+    assert [len(results) for results in taken.values()] == [3, 3, 3, 1]
 
 
 def test_what_was_measured_survives_an_interruption(track, monkeypatch):
