@@ -87,6 +87,14 @@ def test_time_to_error_claims_take_the_best_on_either_side():
     assert found[1].measured.value == pytest.approx(2e-4 * (0.02 / 1e-4) ** 2 / 2e-6) and "analytic (at most)" in found[1].note
 
 
+@pytest.mark.parametrize(("beside", "best"), [("mc-area", "mc-area"), ("mc-cosine", "path")])
+def test_path_is_no_candidate_beside_the_kernel_that_it_shares(beside, best):
+    """Path is the faster by luck; where mc-area refuses the scene it is a method of its own."""
+    rows = [*timed("square-light", beside, 1.1e-6, 0.02), *timed("square-light", "path", 1e-6, 0.02),
+            *timed("square-light", "cycles", 9e-4, 0.02)]
+    assert claims(rows)[0].note == f"cycles over {best}"
+
+
 def test_what_nobody_measured_is_neither_met_nor_missed():
     found = claims(timed("square-light", "mc-area", 1e-6, 0.02))
     assert {claim.outcome for claim in found} == {UNMEASURED} and "no renderer" in found[0].note
