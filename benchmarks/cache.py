@@ -1,11 +1,13 @@
 """The cache of compiled kernels: how soon a fresh process that finds it warm has its first kernel, and each further one.
 
-Each process runs `fresh_process.py`, which says how long each kernel took after `import numba` and what was compiled.
+Each process runs `fresh_process.py`, which says how long each kernel took after `import numba` and what was compiled. It keeps
+bytecode, as Python does if nobody forbids it: to compile the sources anew would be 40 % of the imports.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterable
@@ -16,10 +18,16 @@ from rows import Row
 
 NAME = "cache"
 PROGRAM = Path(__file__).parent / "fresh_process.py"
-KERNELS = (("square-light", "mc-area"), ("occluded-square", "mc-area"), ("square-light", "mc-area/sobol"),
-           ("disk-light", "mc-area"), ("sphere-light", "mc-solid-angle"), ("square-light", "mc-cosine"),
-           ("square-light", "riemann-area"), ("square-light", "analytic"))
-LONGEST = 300.0  # s: a process that has to compile everything
+KERNELS = (
+    ("square-light", "mc-area"), ("occluded-square", "mc-area"), ("picket-fence", "mc-area"), ("disk-light", "mc-area"),
+    ("square-light", "mc-area/sobol"), ("square-light", "mc-area/jitter"), ("square-light", "mc-area/lattice"),
+    ("square-light", "mc-cosine"), ("square-light", "mc-hemisphere"), ("square-light", "mc-mis"),
+    ("sphere-light", "mc-solid-angle"), ("square-light", "mc-projected-solid-angle"),
+    ("square-light", "riemann-area"), ("square-light", "riemann-hemisphere"), ("occluded-square", "cubature"),
+    ("square-light", "analytic"), ("sphere-furnace", "path"), ("cube-room", "path"), ("sphere-furnace", "path/recursion"),
+)  # of each kind one at least
+LONGEST = 600.0  # s: a process that has to compile everything
+FORBIDS = "PYTHONDONTWRITEBYTECODE"
 
 Add = Callable[[Iterable[Row]], None]
 
@@ -46,7 +54,12 @@ def rows(scene: str, method: str, place: int, taken: list[list[dict]]) -> list[R
 def fresh(kernels: Iterable[tuple[str, str]]) -> list[dict]:
     """What a fresh process says of each kernel in turn. Raises RuntimeError with its last words where it fails."""
     names = [f"{scene}={method}" for scene, method in kernels]
-    done = subprocess.run([sys.executable, PROGRAM, *names], capture_output=True, text=True, timeout=LONGEST)
+    done = subprocess.run([sys.executable, PROGRAM, *names], capture_output=True, text=True, timeout=LONGEST, env=environment())
     if done.returncode:
         raise RuntimeError(f"{PROGRAM.name}: {done.stderr.strip()[-500:]}")
     return json.loads(done.stdout)
+
+
+def environment() -> dict[str, str]:
+    """This process's, in which Python may keep bytecode."""
+    return {name: value for name, value in os.environ.items() if name != FORBIDS}

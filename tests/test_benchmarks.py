@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,7 @@ from lightproof.trial import Result, Status
 sys.path.append(str(Path(__file__).resolve().parents[1] / "benchmarks"))
 
 import accuracy
+import cache
 import growth
 import operations
 import page
@@ -26,7 +28,7 @@ from claims import MET, MISSED, OPEN, UNMEASURED, claims
 from endings import Limit
 from ladders import AT_MOST, EXTRAPOLATED, MEASURED, NEVER, SHORTEST, SINGLE, Ladder
 from powers import fitted
-from race import Film, Track, race
+from race import Film, Track, family, ours, race
 from rows import Estimate, Row, Table, read
 
 SAMPLES = 4.0 ** np.arange(6)
@@ -161,6 +163,15 @@ def test_exponents_are_fitted_beside_an_overhead():
     rows = [Row("growth", "s", "m", "blockers", x, "render", "s", (1e-3 + 2e-7 * x**1.5,) * 3) for x in 10.0 ** np.arange(7)]
     power = fitted(rows)
     assert (power.exponent.value, power.overhead) == pytest.approx((1.5, 1e-3), rel=1e-4)
+
+
+def test_fresh_processes_load_every_kind_of_kernel_and_may_keep_bytecode(monkeypatch):
+    """Every family of ours but the naive one, and every kind of points."""
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    assert set(os.environ) - set(cache.environment()) == {"PYTHONDONTWRITEBYTECODE"}
+    methods = {method for _, method in cache.KERNELS}
+    assert {family(method) for method in methods} == {family(entry.name) for entry in ours()}
+    assert {method.partition("/")[2] for method in methods} == {"", "jitter", "lattice", "sobol", "recursion"}
 
 
 def test_operations_are_counted_in_the_loop_alone():
