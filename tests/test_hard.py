@@ -16,7 +16,7 @@ from lightproof.estimators.mc_area import McArea
 from lightproof.estimators.mc_solid_angle import McSolidAngle
 from lightproof.estimators.textbook import Textbook
 from lightproof.judging import Judge
-from lightproof.reporting import hard, hard_charts, hard_findings, hard_page, page, sweeps
+from lightproof.reporting import hard, hard_charts, hard_findings, hard_page, hard_spread, page, sweeps
 from lightproof.reporting.evaluation import Cell, Evaluation
 from lightproof.scene import Scene
 from lightproof.store import Run
@@ -260,8 +260,8 @@ def test_sentences_say_where_each_method_breaks(evaluation):
     assert said["off by more than 1 % at a distance to the lamp of 10⁴ m and more"] == ["far"]
     assert said["no systematic error of more than 1 %"] == ["exact", "noisy"]
     (blind,) = said["blind to errors of more than 1 % at a distance to the lamp of 0.0001 m and less: a single sample can weigh"
-                    " up to the share in brackets"]
-    assert blind.startswith("blind (9.8 × 10⁸ times the light at ")
+                    " up to the share of the light in brackets"]
+    assert blind == "blind (10⁹ times)"
     assert said["no light but NaN, first at distance to the lamp 0.001 m (point 3)"] == ["broken"]
 
 
@@ -287,8 +287,8 @@ def test_a_method_with_much_scatter_is_not_called_sound():
     said = said_of(judged_on([DISTANCE], scattered(np.where(beyond, 0.4, 0.001))))
     (sentence, (label,)), = said.items()
     assert sentence == ("blind to errors of more than 1 % at a distance to the lamp of 1 m and more: noise hides up to the share"
-                        " in brackets")
-    assert re.fullmatch(r"mc-area \((6|7|8|9|10)\d % at .*m\)", label)
+                        " of the light in brackets")
+    assert re.fullmatch(r"mc-area \((6|7|8|9|10)\d\s%\)", label)
 
 
 STRIPS = [CATALOGUE.scene(f"hard-aspect{case}") for case in ("", ":strip-1e4", ":strip-1e8")]
@@ -367,7 +367,38 @@ def test_the_chart_has_the_worst_of_the_points_that_share_a_value():
     run = Run("run-1", "2026-01-02T03:04:05+00:00", "digest", "a machine", 2, 7, {}, "abc", {})
     (group,) = hard.groups(hard.rows(Evaluation(run, (scene,), (given("mine", film[None], scene, deterministic=True),))))
     (points,) = hard_charts.error_along(group, ["mine"])["datasets"].values()
-    assert sorted(point["error"] for point in points) == pytest.approx([0.1, 0.11, 0.12, 0.13, 0.14])
+    assert sorted(point["value"] for point in points) == pytest.approx([0.1, 0.11, 0.12, 0.13, 0.14])
+
+
+def test_a_page_says_whose_variance_explodes_and_whose_does_not():
+    """At every distance the mean of one method's samples is right, but below 1 m they scatter by 100 times the light; another's
+    films of rare samples lack the light below 1e-4 m, as it says itself; a third lacks it and says nothing; the last is even."""
+    at, value = sweeps.values(DISTANCE), EXACT.value
+    one_sample = np.where(at < 1, 100, 0.5)  # the films' own scatter is an eighth of it, with 64 samples
+    lacking = scattered(1e-3).results
+    films = np.array([result.film for result in lacking]) - 0.99 * value * (at <= 1e-4)
+    (group,) = hard.groups(hard.rows(judged_on(
+        [DISTANCE], scattered(one_sample / 8, "mc-area"), scattered(0.5 / 8, "mc-solid-angle"),
+        given("rare", films, peak=1e12 * value), given("silent", films), given("exact", value[None], deterministic=True))))
+    assert hard_spread.sentences(group) == {
+        "never above 10 times the exact light": ["mc-solid-angle"],
+        "explodes: above 10 times the exact light at a distance to the lamp of 0.1 m and less": ["mc-area"],
+        "explodes: above 10 times the exact light at a distance to the lamp of 0.0001 m and less": ["rare"],
+        "not to be told at a distance to the lamp of 0.0001 m and less: off by more than films scatter, by light too rare to be"
+        " met or missing for good": ["silent"],
+    }
+
+
+def test_the_deviation_of_one_sample_is_that_of_the_films_times_the_root_of_their_samples():
+    """Noise of 0.25 of the light in films of 64 samples is one of 2 in a sample; where 1,024 of them miss 0.99 of the light, each
+    of those that would bring it is worth 32 x 0.99 at least, and its point is hollow."""
+    even = hard_spread.Spread(hard.Deviation(scattered(0.25)))
+    assert even.relative.mean() == pytest.approx(2, rel=0.15)
+    films = 0.01 * EXACT.value * (1 + 1e-4 * np.arange(16)[:, None])
+    lacking = given("lacking", films, peak=1e12 * EXACT.value)
+    (group,) = hard.groups(hard.rows(judged_on([DISTANCE], lacking)))
+    points = next(rows for rows in hard_charts.spread_along(group, ["lacking"])["datasets"].values() if "method" in rows[0])
+    assert all(point["value"] == pytest.approx(32 * 0.99, rel=1e-3) and point["hidden"] for point in points)
 
 
 @pytest.mark.parametrize("name", [scene.name for scene in CATALOGUE.scenes() if "hard" in scene.tags])

@@ -74,11 +74,15 @@ class Deviation:
         return np.where(self.unlit, np.inf, known / self.unit)
 
     @cached_property
-    def noise(self) -> np.ndarray:
+    def scatter(self) -> np.ndarray:
+        """The half-width of an interval from the scatter between films, which holds at all points but for a chance of `LEVEL`."""
         if self.certain:
             return np.zeros_like(self.error)
-        quantile = statistics.simultaneous_quantile(LEVEL, len(self.error), len(self.cell.final))
-        return quantile * self.standard_error + self.leap
+        return statistics.simultaneous_quantile(LEVEL, len(self.error), len(self.cell.final)) * self.standard_error
+
+    @cached_property
+    def noise(self) -> np.ndarray:
+        return self.scatter + self.leap
 
     @cached_property
     def systematic(self) -> np.ndarray:

@@ -11,7 +11,7 @@ from lightproof.renderers.registry import METHODS, OURS
 from lightproof.reporting import hard
 from lightproof.reporting.hard import Deviation, Group, Row, Square, amount, short
 from lightproof.reporting.sweeps import Sweep
-from lightproof.reporting.wording import number, percent
+from lightproof.reporting.wording import number, percent, unbroken
 from lightproof.trial import Status
 from lightproof.verdict import Outcome
 
@@ -44,10 +44,10 @@ def findings(group: Group) -> dict[str, list[str]]:
 def _sentences(group: Group, squares: Sequence[Square]) -> dict[str, str]:
     """Of one method, each with what goes into brackets: sound only where every case that the method accepts was measured, and
     nowhere could noise hide an error to speak of."""
-    faults, missing = _faults(group, squares), _missing(group.rows, squares)
+    faults, absent = _faults(group, squares), missing(group.rows, squares)
     if faults or not any(square.deviation for square in squares):
-        return faults | missing
-    return missing | {f"{SOUND} elsewhere" if missing else SOUND: ""}
+        return faults | absent
+    return absent | {f"{SOUND} elsewhere" if absent else SOUND: ""}
 
 
 def _faults(group: Group, squares: Sequence[Square]) -> dict[str, str]:
@@ -58,7 +58,7 @@ def _faults(group: Group, squares: Sequence[Square]) -> dict[str, str]:
 
     off = at(lambda one: one.systematic > BROKEN)
     blind, unlit = at(_blind), at(lambda one: one.unlit)
-    hider, most = _hidden(group, measured) if blind else ("", "")
+    hider, most = _hidden([one for _, one in measured]) if blind else ("", "")
     broken = next((square.no_light for square in squares if square.no_light), None)
     said = {
         f"off by more than {SAID} {off}": (off, ""),
@@ -74,21 +74,19 @@ def _blind(one: Deviation) -> np.ndarray:
     return (one.noise > BROKEN) & (one.systematic <= BROKEN) & ~one.unlit
 
 
-def _hidden(group: Group, measured: Sequence[tuple[Row, Deviation]]) -> tuple[str, str]:
-    """What hides errors, and of up to how much and where."""
-    row, one = max(measured, key=lambda each: np.where(_blind(each[1]), each[1].noise, 0).max())
+def _hidden(measured: Sequence[Deviation]) -> tuple[str, str]:
+    """What hides errors, and of up to how much."""
+    one = max(measured, key=lambda each: np.where(_blind(each), each.noise, 0).max())
     worst = int(np.argmax(np.where(_blind(one), one.noise, 0)))
     hider = "a single sample can weigh" if one.leap[worst] > one.noise[worst] / 2 else "noise hides"
-    place = f" at {amount(row.parameter[worst], group.sweep.unit)}" if group.swept else ""
-    return f"{hider} up to the share in brackets", f"{_share(one.noise[worst])}{place}"
+    return f"{hider} up to the share of the light in brackets", unbroken(_share(float(one.noise[worst])))
 
 
 def _share(value: float) -> str:
-    """A fraction of the exact light."""
-    return percent(value) if value < 10 else f"{number(float(value), 2)} times the light"
+    return percent(value) if value < 10 else f"{number(value, 1).removeprefix('1 × ')} times"
 
 
-def _missing(rows: Sequence[Row], squares: Sequence[Square]) -> dict[str, str]:
+def missing(rows: Sequence[Row], squares: Sequence[Square]) -> dict[str, str]:
     """Which cases nothing is known of, and why: none of what a method does not support, nor of what is no light."""
     without: dict[str, list[str]] = {}
     for row, square in zip(rows, squares, strict=True):

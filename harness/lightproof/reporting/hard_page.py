@@ -10,7 +10,7 @@ from typing import Any
 
 import jinja2
 
-from lightproof.reporting import hard, hard_charts, hard_findings, sweeps
+from lightproof.reporting import hard, hard_charts, hard_findings, hard_spread, sweeps
 from lightproof.reporting.colours import ColourMap
 from lightproof.reporting.evaluation import Evaluation
 from lightproof.reporting.hard import Group, Row, Square
@@ -74,6 +74,12 @@ class HardPage:
 
     def chart(self, group: Group) -> dict[str, Any] | None:
         return hard_charts.error_along(group, self.methods)
+
+    def spread(self, group: Group) -> dict[str, list[str]]:
+        return hard_spread.sentences(group)
+
+    def spread_chart(self, group: Group) -> dict[str, Any] | None:
+        return hard_charts.spread_along(group, self.methods)
 
     def textbook(self, scene_id: str) -> str:
         """What the hard case does to the textbook's formula."""
