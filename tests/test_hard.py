@@ -344,6 +344,14 @@ def test_what_analytic_was_not_asked_keeps_its_promise_open():
     assert promise_of("analytic", judged_on(STRIPS[:2], exact, scattered(1e-4, "mc-area", STRIPS[1]))).kept is None
 
 
+def test_films_that_are_alike_may_have_missed_one_dark_sample_in_a_thousand():
+    """1,024 samples, each of 1.001 times the light: if one in a thousand were black, the mean would be right, and there were no
+    such sample among them once in three runs. Of 1.1 times the light the same cannot be."""
+    for excess, certain in ((1.001, False), (1.1, True)):
+        alike = hard.Deviation(given("mc-cosine", np.tile(excess * EXACT.value, (16, 1))))
+        assert (alike.systematic > 0).all() == alike.off == certain
+
+
 def test_an_open_promise_is_shown_as_open():
     html = hard_page.render(judged_on([DISTANCE], scattered(1e-2)), page.environment(), "")
     assert 'badge undecided"><span aria-hidden="true">?</span> open' in html

@@ -20,6 +20,7 @@ from lightproof.verdict import Outcome
 TAG = "hard"
 ROUNDING = 1e-5  # a smaller systematic error may be that of float32
 LEVEL = 1e-4  # chance that noise alone makes any point of a cell look systematically off
+ALIKE = 1e-12  # of a value: the standard error of films that do not differ
 PRECISIONS = {"float64": np.float64, "float32": np.float32, "float16": np.float16}
 NO_LIGHT = re.compile(r"are no light, the first (\S+) in element (\d+)")
 
@@ -75,10 +76,15 @@ class Deviation:
 
     @cached_property
     def scatter(self) -> np.ndarray:
-        """The half-width of an interval from the scatter between films, which holds at all points but for a chance of `LEVEL`."""
+        """The half-width of an interval from the scatter between films, which holds at all points but for a chance of `LEVEL`.
+        Where all films are alike, of N samples none was black, so that black ones are at most -ln(LEVEL) in N (Hanley and
+        Lippman-Hand 1983): that share of the value is in doubt."""
         if self.certain:
             return np.zeros_like(self.error)
-        return statistics.simultaneous_quantile(LEVEL, len(self.error), len(self.cell.final)) * self.standard_error
+        samples, value = sum(result.samples for result in self.cell.final), np.abs(self.cell.film) / self.unit
+        quantile = statistics.simultaneous_quantile(LEVEL, len(self.error), len(self.cell.final))
+        black = min(1.0, -np.log(LEVEL) / samples) if samples else 1.0
+        return np.where(self.standard_error > ALIKE * value, quantile * self.standard_error, black * value)
 
     @cached_property
     def noise(self) -> np.ndarray:
