@@ -261,7 +261,7 @@ def test_sentences_say_where_each_method_breaks(evaluation):
     assert said["no systematic error of more than 1 %"] == ["exact", "noisy"]
     (blind,) = said["blind to errors of more than 1 % at a distance to the lamp of 0.0001 m and less: a single sample can weigh"
                     " up to the share of the light in brackets"]
-    assert blind == "blind (10⁹ times)"
+    assert blind == "blind (1e9 times)"
     assert said["no light but NaN, first at distance to the lamp 0.001 m (point 3)"] == ["broken"]
 
 

@@ -11,7 +11,7 @@ from lightproof.renderers.registry import METHODS, OURS
 from lightproof.reporting import hard
 from lightproof.reporting.hard import Deviation, Group, Row, Square, amount, short
 from lightproof.reporting.sweeps import Sweep
-from lightproof.reporting.wording import number, percent, unbroken
+from lightproof.reporting.wording import percent, unbroken
 from lightproof.trial import Status
 from lightproof.verdict import Outcome
 
@@ -83,7 +83,7 @@ def _hidden(measured: Sequence[Deviation]) -> tuple[str, str]:
 
 
 def _share(value: float) -> str:
-    return percent(value) if value < 10 else f"{number(value, 1).removeprefix('1 × ')} times"
+    return percent(value) if value < 10 else f"{short(value)} times"
 
 
 def missing(rows: Sequence[Row], squares: Sequence[Square]) -> dict[str, str]:
