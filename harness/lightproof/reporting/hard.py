@@ -70,21 +70,27 @@ class Deviation:
         does not know."""
         if self.certain:
             return np.zeros_like(self.error)
-        peaks = [result.peak for result in self.cell.final if result.peak is not None]
-        known = np.max(peaks, axis=0) / sum(result.samples for result in self.cell.final) if peaks else np.zeros_like(self.unit)
+        known = np.zeros_like(self.unit) if self.peak is None else self.peak / sum(result.samples for result in self.cell.final)
         return np.where(self.unlit, np.inf, known / self.unit)
+
+    @cached_property
+    def peak(self) -> np.ndarray | None:
+        """The largest value that one sample can have, in the film's unit; None where the method does not know it."""
+        peaks = [result.peak for result in self.cell.final if result.peak is not None]
+        return np.max(peaks, axis=0) if peaks else None
 
     @cached_property
     def scatter(self) -> np.ndarray:
         """The half-width of an interval from the scatter between films, which holds at all points but for a chance of `LEVEL`.
-        Where all films are alike, of N samples none was black, so that black ones are at most -ln(LEVEL) in N (Hanley and
-        Lippman-Hand 1983): that share of the value is in doubt."""
+        Where all films are alike and no `peak` tells what another sample could do, of N samples none was black, so that black
+        ones are at most -ln(LEVEL) in N (Hanley and Lippman-Hand 1983): that share of the value is in doubt."""
         if self.certain:
             return np.zeros_like(self.error)
         samples, value = sum(result.samples for result in self.cell.final), np.abs(self.cell.film) / self.unit
         quantile = statistics.simultaneous_quantile(LEVEL, len(self.error), len(self.cell.final))
         black = min(1.0, -np.log(LEVEL) / samples) if samples else 1.0
-        return np.where(self.standard_error > ALIKE * value, quantile * self.standard_error, black * value)
+        alike = (self.standard_error <= ALIKE * value) & (self.peak is None)
+        return np.where(alike, black * value, quantile * self.standard_error)
 
     @cached_property
     def noise(self) -> np.ndarray:
