@@ -1,13 +1,14 @@
-"""How time grows with elements, samples, lights, blockers and threads, and whether memory grows with samples.
+"""How time grows with samples, elements, lights, blockers and threads, and whether memory grows with samples.
 
 Every method goes on until a film takes too long, or until it refuses. Lights and blockers are many small squares between the
-same floor and lamp, so that the scene stays what it is. Samples have workers of their own: those of other parts hold some GB of
-compiled kernels, beside which a film is nothing.
+same floor and lamp, so that the scene stays what it is. The workers are fresh, and samples are the first to be varied: workers
+that have compiled what other parts need hold some GB, beside which a film is nothing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
@@ -47,14 +48,13 @@ class Point:
 
 
 def measure(track: Track, add: Add, rounds: int, quick: bool, tracks: dict[int, Track]) -> None:
-    """Curve by curve; `tracks` has workers with other numbers of threads."""
+    """Curve by curve; `tracks` has one for each number of threads."""
     entries = track.there(METHODS[name] for name in SHARES)
-    few = slice(2 if quick else None)
-    with track.fresh() as empty:
-        curve(empty, list(samples())[few], empty.there(entries), add, rounds)
-    for points in (elements(), lights(), blockers()):
-        curve(track, list(points)[few], entries, add, rounds)
-    threads(tracks, entries, add, rounds, quick)
+    with ExitStack() as stack:
+        fresh = {count: stack.enter_context(other.fresh()) for count, other in tracks.items()}
+        for points in (samples(), elements(), lights(), blockers()):
+            curve(fresh[track.threads], list(points)[: 2 if quick else None], entries, add, rounds)
+        threads(fresh, entries, add, rounds, quick)
 
 
 def curve(track: Track, points: list[Point], entries: list[Entry], add: Add, rounds: int) -> None:

@@ -20,8 +20,8 @@ MEASURED, SHORTEST, AT_MOST, EXTRAPOLATED, NEVER = "", "with one sample", "at mo
 
 @dataclass(frozen=True)
 class Ladder:
-    """`seconds` and rms `errors` (R, S) of films in R rounds at `samples` (S,) per element; `single`: the first step really took
-    one sample, so that there is no shorter film."""
+    """`seconds` and rms `errors` (R, S) of films in R rounds at `samples` (S,) per element; `single`: the first step really
+    took one sample, so that there is no shorter film."""
 
     scene: str
     method: str

@@ -57,7 +57,7 @@ def _steps(one: Ladder) -> list[dict[str, Any]]:
              "rms error": percent(error)} for samples, time, error in zip(one.samples, taken, errors, strict=True)]
 
 
-def curves(rows: Sequence[Row], powers: dict[str, Power], methods: Sequence[str]) -> dict[str, Any]:
+def curves(rows: Sequence[Row], powers: dict[str, Power], methods: Sequence[str], what: str = FILM) -> dict[str, Any]:
     """Time against what was varied, with the fitted curves."""
     parameter = rows[0].parameter
     data = pd.DataFrame([{"method": row.method, "amount": row.value, "seconds": row.median, "time": seconds(row.median)}
@@ -66,7 +66,7 @@ def curves(rows: Sequence[Row], powers: dict[str, Power], methods: Sequence[str]
     look = [(method, methods.index(method)) for method in data.method.unique()]
     colour = alt.Color("method:N", scale=looks(look, COLOURS), legend=LEGEND)
     x = alt.X("amount:Q", title=parameter, scale=log_scale(data.amount), axis=decades(data.amount, COUNT))
-    y = alt.Y("seconds:Q", title=FILM, scale=log_scale(data.seconds), axis=decades(data.seconds, SECONDS))
+    y = alt.Y("seconds:Q", title=what, scale=log_scale(data.seconds), axis=decades(data.seconds, SECONDS))
     points = alt.Chart(data).mark_point(filled=True, size=50, clip=True).encode(
         x=x, y=y, color=colour, shape=alt.Shape("method:N", scale=looks(look, SHAPES), legend=LEGEND),
         tooltip=["method", "amount:Q", "time"])

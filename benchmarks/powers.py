@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import curve_fit
+from scipy.optimize import OptimizeWarning, curve_fit
 
 from lightproof import statistics
 from ratios import over_rounds
@@ -47,7 +48,8 @@ def _fit(amounts: np.ndarray, times: np.ndarray) -> tuple[float, float, float]:
         return 0.0, factor, slope
     start = np.log(times[0] / 2), np.log(times[-1]) - np.log(amounts[-1]), 1.0
     try:
-        found, _ = curve_fit(_logarithm, np.log(amounts), np.log(times), p0=start, maxfev=2000)
+        with warnings.catch_warnings(action="ignore", category=OptimizeWarning):  # of no covariance, which nobody asks for
+            found, _ = curve_fit(_logarithm, np.log(amounts), np.log(times), p0=start, maxfev=2000)
     except RuntimeError:
         return 0.0, factor, slope
     return float(np.exp(found[0])), float(np.exp(found[1])), float(found[2])

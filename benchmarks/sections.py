@@ -15,6 +15,10 @@ from rows import Estimate, Row
 
 SIGNS = {MEASURED: "", SHORTEST: "", AT_MOST: "≤ ", EXTRAPOLATED: "≈ ", NEVER: ""}
 WHOLE = "the whole loop"
+ONCE = {"setup": "set-up", "compile": "compile"}  # phases, and what a table calls them
+SET_UP_FOR = ("elements", "lights", "blockers")  # what a scene is set up for
+GROWN = 10  # times the least set-up, of the greatest: a curve has an exponent
+NONE = "—"
 COUNTED = ("compiled", "hits", "misses")
 
 
@@ -40,15 +44,20 @@ def throughput(rows: Sequence[Row]) -> list[Part]:
     for row in rows:
         if row.unit == "samples/s" and row.each:
             races.setdefault((row.scene, row.value), []).append(row)
-    once = {(row.scene, row.value, row.method, row.phase): row.median for row in rows if row.phase in ("setup", "compile")}
     parts = []
     for (scene, samples), raced in races.items():
-        body = [[row.method, wording.count(row.median), " to ".join(map(wording.count, row.interval)),
-                 *(wording.seconds(once.get((scene, samples, row.method, phase), math.nan)) for phase in ("setup", "compile"))]
+        once = _once([row for row in rows if (row.scene, row.value) == (scene, samples)])
+        body = [[row.method, wording.count(row.median), " to ".join(map(wording.count, row.interval)), *once(row.method)]
                 for row in sorted(raced, key=lambda row: -row.median)]
         title = f"{scene}, {samples:,.0f} samples per element"
-        parts.append(Part(title, plots.rates(raced), ("method", "samples/s", "interval", "set-up", "compile"), body))
+        parts.append(Part(title, plots.rates(raced), ("method", "samples/s", "interval", *ONCE.values()), body))
     return parts
+
+
+def _once(rows: Sequence[Row]) -> Callable[[str], list[str]]:
+    """What a method took but once: the cells of `ONCE`."""
+    found = {(row.method, row.phase): row.median for row in rows}
+    return lambda method: [wording.seconds(found.get((method, phase), math.nan)) for phase in ONCE]
 
 
 def choice(rows: Sequence[Row]) -> list[Part]:
@@ -66,15 +75,17 @@ def accuracy(rows: Sequence[Row]) -> list[Part]:
     parts = []
     for scene in dict.fromkeys(one.scene for one in climbed):
         here = [one for one in climbed if one.scene == scene]
-        body = [[one.method, *(_time(times.get((scene, one.method, error))) for error in ERRORS)]
+        once = _once([row for row in rows if row.scene == scene])
+        body = [[one.method, *(_time(times.get((scene, one.method, error))) for error in ERRORS), *once(one.method)]
                 for one in sorted(here, key=lambda one: (one.time_to(ERRORS[1]), one.method))]
-        parts.append(Part(scene, plots.races(here, methods), ("method", *(f"to {100 * error:g} %" for error in ERRORS)), body))
+        head = ("method", *(f"render to {100 * error:g} %" for error in ERRORS), *ONCE.values())
+        parts.append(Part(scene, plots.races(here, methods), head, body))
     return parts
 
 
 def _time(row: Row | None) -> str:
     if row is None or not math.isfinite(row.median):
-        return "—" if row is None else "never"
+        return NONE if row is None else "never"
     known = f", {EXTRAPOLATED}" if row.note == EXTRAPOLATED else ""
     return f"{SIGNS[row.note]}{wording.seconds(row.median)}{known}{_span(*row.interval)}"
 
@@ -98,30 +109,54 @@ def hardware(rows: Sequence[Row]) -> list[Part]:
 
 
 def growth(rows: Sequence[Row]) -> list[Part]:
-    """A chart for each thing that was varied, with exponents and memory."""
+    """For each thing that was varied a chart of render times with exponents and memory, and one of set-up times."""
     timed = [row for row in rows if row.phase == "render" and row.each]
     methods = list(dict.fromkeys(row.method for row in timed))
     parts = []
     for parameter in dict.fromkeys(row.parameter for row in timed):
         here = [row for row in timed if row.parameter == parameter]
-        found = {method: fitted([row for row in here if row.method == method]) for method in methods}
-        powers: dict[str, Power] = {method: power for method, power in found.items() if power}
-        last = {(row.method, row.phase): row.median for row in rows if row.parameter == parameter and row.each}
-        memory = {method: _memory(rows, method, parameter) for method in powers}
-        body = [[method, wording.number(power.exponent.value), interval(power.exponent),
-                 wording.seconds(power.overhead) if power.overhead else "", memory[method],
-                 wording.seconds(last[method, "setup"])]
-                for method, power in powers.items()]
+        powers = _powers(here)
+        body = [[method, *_exponent(power), wording.seconds(power.overhead) if power.overhead else "",
+                 _memory(rows, method, parameter)] for method, power in powers.items()]
         parts.append(Part(f"Time against {parameter}", plots.curves(here, powers, methods) if powers else None,
-                          ("method", "exponent", "interval", "overhead", "memory", "set-up at the end"), body))
+                          ("method", "exponent", "interval", "overhead", "memory"), body))
+        once = [row for row in rows if row.parameter == parameter and row.phase == "setup" and row.median > 0]
+        parts += [setting_up(once, methods)] if once and parameter in SET_UP_FOR else []
     return parts
+
+
+def setting_up(rows: Sequence[Row], methods: Sequence[str]) -> Part:
+    """Set-up of one parameter's scenes, each measured once; an exponent where it grows by more than noise."""
+    amounts = sorted({row.value for row in rows})
+    found: dict[str, dict[float, float]] = {}
+    for row in rows:
+        found.setdefault(row.method, {})[row.value] = row.median
+    grown = [method for method, each in found.items() if max(each.values()) > GROWN * min(each.values())]
+    powers = _powers([row for row in rows if row.method in grown])
+    body = [[method, _exponent(powers[method])[0] if method in powers else NONE,
+             *(wording.seconds(each[amount]) if amount in each else NONE for amount in amounts)]
+            for method, each in found.items()]
+    return Part(f"Set-up against {rows[0].parameter}", plots.curves(rows, powers, methods, "set-up") if powers else None,
+                ("method", "exponent", *(f"{amount:,.0f}" for amount in amounts)), body)
+
+
+def _powers(rows: Sequence[Row]) -> dict[str, Power]:
+    """By method, where there are enough amounts."""
+    each: dict[str, list[Row]] = {}
+    for row in rows:
+        each.setdefault(row.method, []).append(row)
+    return {method: power for method, own in each.items() if (power := fitted(own))}
+
+
+def _exponent(power: Power) -> tuple[str, str]:
+    return wording.number(power.exponent.value), interval(power.exponent)
 
 
 def _memory(rows: Sequence[Row], method: str, parameter: str) -> str:
     """Of the least amount and of the greatest."""
-    found = sorted((row for row in rows if row.each and (row.method, row.parameter, row.phase) == (method, parameter, "memory")),
-                   key=lambda row: row.value)
-    return f"{found[0].median:.1f} to {found[-1].median:.1f} MB"
+    asked = (method, parameter, "memory")
+    found = {row.value: row.median for row in rows if row.each and (row.method, row.parameter, row.phase) == asked}
+    return f"{found[min(found)]:.1f} to {found[max(found)]:.1f} MB"
 
 
 def cache(rows: Sequence[Row]) -> list[Part]:
@@ -141,17 +176,18 @@ SECTIONS: dict[str, tuple[str, Callable[[Sequence[Row]], list[Part]]]] = {
         " film of more elements than the scene's own.", throughput),
     "accuracy": (
         "Render time of one film until its rms error is so many per cent of the tolerance scale, against the proven light."
-        " ≤: the first step of the ladder, which took more than one sample, was better than that; ≈: extrapolated by the slope of"
-        " the last steps; never: the error has stopped falling.", accuracy),
+        " ≤: the first step of the ladder, which took more than one sample, was better than that; ≈: extrapolated by the slope"
+        " of the last steps; never: the error has stopped falling. Set-up and compilation come once, before the first film; of"
+        " a kernel found on disk the latter is what it takes to load.", accuracy),
     "choice": ("Configurations of renderers, tried on every scene; the best took part.", choice),
     "hardware": (
         "The multiply-add peak is measured on the same threads in the same rounds; a multiply-add counts as two operations.",
         hardware),
     "growth": (
-        "Lines are fitted: time = overhead + factor × amount ^ exponent. Lights have a fixed number of samples each."
-        " Memory is the largest that was resident in the method's process, which it shares with its family, while a film was"
-        " rendered, from the least amount to the greatest; processes that the other parts have used hold what they compiled,"
-        " but for samples they are fresh.", growth),
+        "Lines are fitted: time = overhead + factor × amount ^ exponent. Lights have a fixed number of samples each. Set-up was"
+        " measured once for each scene. Memory is the largest that was resident in the method's process, which it shares with"
+        " its family, while a film was rendered, from the least amount to the greatest. The processes are fresh when samples,"
+        " the first, are varied; what is varied later finds what was compiled before.", growth),
     "cache": (
         "Processes that start from nothing and find the compiled kernels on disk. The first kernel's time runs from the moment"
         " when numba is imported.", cache),

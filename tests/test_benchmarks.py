@@ -23,6 +23,7 @@ import cache
 import growth
 import operations
 import page
+import sections
 import throughput
 from claims import MET, MISSED, OPEN, UNMEASURED, claims
 from endings import Limit
@@ -172,6 +173,24 @@ def test_fresh_processes_load_every_kind_of_kernel_and_may_keep_bytecode(monkeyp
     methods = {method for _, method in cache.KERNELS}
     assert {family(method) for method in methods} == {family(entry.name) for entry in ours()}
     assert {method.partition("/")[2] for method in methods} == {"", "jitter", "lattice", "sobol", "recursion"}
+
+
+def test_set_up_is_told_over_the_whole_curve():
+    """Seconds 1e-3 x^2 of one method, which stops at 100, and 1 ms of another, which has no exponent."""
+    about = ("growth", "s")
+    rows = [Row(*about, "m", "lights", x, phase, "s", (1e-3 * x**2,)) for x in (1, 10, 100) for phase in ("render", "setup")]
+    rows += [Row(*about, "n", "lights", x, "setup", "s", (1e-3,)) for x in (1, 10, 100, 1000)]
+    part = sections.setting_up([row for row in rows if row.phase == "setup"], ["m", "n"])
+    assert part.head == ("method", "exponent", "1", "10", "100", "1,000")
+    assert part.body == [["m", "2", "1 ms", "100 ms", "10 s", "—"], ["n", "—", *["1 ms"] * 4]]
+
+
+def test_accuracy_tells_set_up_compilation_and_rendering_apart():
+    taken = {"setup": 2, "compile": 3}
+    once = [Row("accuracy", "s", "mc-area", "samples", 1, phase, "s", (seconds,)) for phase, seconds in taken.items()]
+    part = sections.accuracy([*timed("s", "mc-area", 1e-6, 0.02), *once])[0]
+    assert part.head[1:] == ("render to 1 %", "render to 0.1 %", "render to 0.01 %", "set-up", "compile")
+    assert part.body[0][-2:] == ["2 s", "3 s"]
 
 
 def test_operations_are_counted_in_the_loop_alone():
