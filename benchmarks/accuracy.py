@@ -26,7 +26,7 @@ from rows import Estimate, Row
 NAME = "accuracy"
 TAGS = ("direct", "shadow", "furnace")
 FIRST, MOST = 1, 4**15  # samples per element
-STRETCH = 6  # times the seconds of a renderer's film, for that which may lead beyond one of the errors
+STRETCH = 6  # times the seconds of a renderer's film, for that which may lead beyond a claimed error
 OURS_SHARE = 0.2  # of a renderer's time that a film of ours may take: there are many of them, and the best need far less
 CHOICE_SHARE = 0.2  # of a renderer's time that a film may take while its configuration is chosen
 CHOICE = 0.001  # error that a configuration is chosen for

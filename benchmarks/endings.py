@@ -11,12 +11,13 @@ FACTOR = 4  # samples of a step over those of the one before
 ENOUGH = 0.5 * min(ERRORS)
 SURE = 2  # successive steps that are good enough: one alone may be luck
 FEWEST, PATIENCE = 5, 5  # steps that tell how the error falls, and so many times the seconds that their films may take
-NEAR = (0.8, 2.5)  # times one of `ERRORS`, from where one more step leads beyond it, or so near that it may as well be taken
+CLAIMED = ERRORS[1:]  # what claims are about
+NEAR = (0.8, 2.5)  # times such an error, between which one more step leads beyond it, for sure or nearly
 
 
 @dataclass(frozen=True)
 class Limit:
-    """Seconds that a film may take, and those of the film that may lead beyond one of `ERRORS`."""
+    """Seconds that a film may take, and those of the film that may lead beyond a claimed error."""
 
     seconds: float
     last: float
@@ -32,5 +33,5 @@ class Limit:
 
 
 def near(error: float) -> bool:
-    """Whether one more step may lead beyond one of `ERRORS`."""
-    return any(NEAR[0] * wanted < error <= NEAR[1] * wanted for wanted in ERRORS)
+    """Whether one more step may lead beyond a claimed error."""
+    return any(NEAR[0] * claimed < error <= NEAR[1] * claimed for claimed in CLAIMED)

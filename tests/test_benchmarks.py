@@ -124,9 +124,10 @@ def test_time_to_error_is_interpolated_extrapolated_or_never():
     ([4e-3, 1.2e-3], 0.8, True),
     ([0.5, 0.1, 2e-2, 4e-3, 1.2e-3], 0.7, False),
     ([0.5, 0.1, 2e-2, 4e-3, 0.7e-3], 0.7, True),  # that film is behind it
+    ([0.5, 0.3, 0.1, 3e-2, 1.2e-2], 0.2, True),  # no claim is about 1 %
 ])
 def test_a_ladder_ends(errors, seconds, ends):
-    """A film may take 0.5 s, one that leads beyond an error of 1, 0.1 or 0.01 % 3 s, one of the first five steps 2.5 s."""
+    """A film may take 0.5 s, one that leads beyond an error of 0.1 or 0.01 % 3 s, one of the first five steps 2.5 s."""
     assert Limit(0.5, 3.0).ends(errors, [seconds] * len(errors)) is ends
 
 
