@@ -331,7 +331,7 @@ def test_projected_polygons_have_no_noise(name):
 
 
 @pytest.mark.parametrize("label", ["base", "tilted"])
-@pytest.mark.parametrize("name", NEW)
+@pytest.mark.parametrize("name", [*NEW, "mc-area", "mc-hemisphere", "mc-cosine/float64"])
 def test_nothing_is_seen_from_a_light_s_plane_or_its_back(name, label):
     """hard-in-plane: exactly zero, also on the lamp, where rounding could lift the receiver over it."""
     assert (films(name, case("hard-in-plane", label), 256, 1) == 0).all()
@@ -360,6 +360,15 @@ def test_paths_that_aim_at_no_light_meet_it():
     assert (np.abs(met.mean(axis=0) - aimed.mean(axis=0)) < SIGMAS * error).all()
     assert (met.mean(axis=0) > 0.5).all()
     assert "no direction meets it" in Path("path/no-next-event", 1).unsupported(CATALOGUE.scene("point-light"))
+
+
+def test_paths_that_aim_at_no_light_refuse_one_that_touches():
+    """A receiver 0.37 pm from the lamp: rays would pass it, for they pass what they start from. One that lies on a lamp, or on
+    the wall of a furnace, is no such case."""
+    method = Path("path/no-next-event", 1)
+    assert "3.7e-13 m from a receiver" in method.unsupported(case("hard-approach", "base"))
+    for name in ("hard-in-plane", "sphere-furnace", "cube-furnace", "emitting-cap"):
+        assert method.unsupported(case(name, "base")) is None
 
 
 def test_every_method_of_ours_has_a_row():

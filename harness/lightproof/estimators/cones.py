@@ -15,9 +15,9 @@ from typing import NamedTuple
 from numba.extending import overload
 
 from lightproof.estimators.compiled import inlined
-from lightproof.estimators.fans import COINCIDES, reach, towards
+from lightproof.estimators.fans import reach, towards
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import Disk, Sphere
+from lightproof.estimators.shapes import COINCIDES, Disk, Sphere
 from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub, tangents
 from lightproof.geometry import Vec3

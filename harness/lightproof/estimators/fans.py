@@ -15,14 +15,13 @@ from typing import NamedTuple
 from numba.extending import overload
 
 from lightproof.estimators.compiled import inlined
-from lightproof.estimators.shapes import Parallelogram, Triangle
+from lightproof.estimators.shapes import COINCIDES, Parallelogram, Triangle
 from lightproof.estimators.trigonometry import half_turn, series
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub
 from lightproof.geometry import Vec3
 
 TINY = 1e-280  # keeps a quotient from 0/0
 NEAREST = 1e-100  # of a metre: a receiver nearer to a corner is taken for this near
-COINCIDES = 2e-15  # of a distance: what lies no higher over a plane lies in it, but for rounding, and sees nothing of it
 
 
 class Sector(NamedTuple):

@@ -89,7 +89,7 @@ def ball(light, origin, frame, model):
 def window(light, origin, frame, model):
     o = sub(origin, light.center)
     margins = margins_of(light, dot(o, light.dual_u), dot(o, light.dual_v), model)
-    return Window(placed(light, origin, frame, model), like(model, dot(o, light.normal)), margins)
+    return Window(placed(light, origin, frame, model), like(model, level_of(light, o)), margins)
 
 
 def margins_of(shape, a, b, model):

@@ -14,11 +14,10 @@ from numba.extending import overload
 
 from lightproof.estimators import shapes
 from lightproof.estimators.aims import INLINED, Aim, counted
-from lightproof.estimators.fans import COINCIDES
 from lightproof.estimators.lamps import Facing, arriving, level_of, parameters
 from lightproof.estimators.meeting import GRAZING, around, meet
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import Sphere, covers
+from lightproof.estimators.shapes import COINCIDES, Sphere, covers
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub
 
 

@@ -14,6 +14,7 @@ from lightproof.estimators.options import Choices
 from lightproof.estimators.paths import Paths, paths
 from lightproof.estimators.points import Random
 from lightproof.estimators.sobol import sobol
+from lightproof.estimators.touching import touching
 from lightproof.estimators.views import View
 from lightproof.scene import Scene
 
@@ -41,7 +42,7 @@ class Path(McArea):
         return {**super().settings(), **points, "domain": "paths", "pdf": density, "roulette": "unbiased"}
 
     def unsupported(self, scene: Scene) -> str | None:
-        return super().unsupported(scene) or (None if self.aims else no_bulbs(scene))
+        return super().unsupported(scene) or (None if self.aims else no_bulbs(scene) or touching(scene))
 
     def untraceable(self, scene: Scene) -> str | None:
         return None

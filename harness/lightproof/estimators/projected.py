@@ -17,9 +17,9 @@ from lightproof.estimators.aims import INLINED, Aim, counted
 from lightproof.estimators.azimuths import corners, inside, sectors, summed
 from lightproof.estimators.compiled import inlined, strict
 from lightproof.estimators.cones import entry, over_sphere, towards
-from lightproof.estimators.fans import COINCIDES, add, reach
+from lightproof.estimators.fans import add, reach
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import Disk, Parallelogram, Sphere, Triangle
+from lightproof.estimators.shapes import COINCIDES, Disk, Parallelogram, Sphere, Triangle
 from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.vectors import along, dot, norm, scaled, sub
 

@@ -15,6 +15,7 @@ from lightproof import geometry
 from lightproof.estimators.vectors import like, sub, turned
 from lightproof.geometry import Vec3
 
+COINCIDES = 2e-15  # of a distance: what lies no higher over a plane lies in it, but for rounding, and sees nothing of it
 PARALLEL = 1e-12  # of a quadrilateral's size: how far its fourth corner may be off and still count as a parallelogram's
 
 
