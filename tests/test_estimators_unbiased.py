@@ -38,3 +38,15 @@ def test_no_method_is_biased(method, scene):
     assert (found[:, scale.value == 0] == 0).all()
     bright = np.flatnonzero(exact > DIM * exact.max())
     assert unbiased(scale.pooled(found)[:, bright], exact[bright], GRAIN)
+
+
+@pytest.mark.parametrize(("method", "scene", "samples"), [
+    ("riemann-area", "hard-approach:triangle", 2**22),  # one huge value among small ones, whose sum rounding left below zero
+    ("riemann-area", "hard-touching-edge:corner", 2**24),
+    ("mc-area", "hard-approach:sphere", 2**20),  # points 0.37 pm away, of which float32 cannot hold 1/r^4
+    ("cubature", "hard-in-plane", 2**30),  # nothing to refine, however many points it may take
+])  # fmt: skip
+def test_films_are_light(method, scene, samples):
+    """Finite and not below zero where float32 is at its end."""
+    found = films(method, next(one for one in CATALOGUE.scenes() if one.name == scene), samples, 4)
+    assert np.isfinite(found).all() and (found >= 0).all()

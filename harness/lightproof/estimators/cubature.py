@@ -19,6 +19,8 @@ from lightproof.estimators.views import view
 from lightproof.method import Rendering
 from lightproof.scene import DirectionalLight, PointLight, Scene
 
+MOST = 2**20  # leaves of an element: 0.1 GB
+
 
 class Leaves(NamedTuple):
     """Boxes by number (m, 9), the bounds of their errors, or what they can hold at most (m,) [W/m2], what they are, which
@@ -91,7 +93,7 @@ def gathered(leaves, count, lights, blockers, starts, cell, room):
 def estimate(lights, blockers, starts, first, receivers, samples, out):
     """Irradiance, the bound of its error [W/m2] and points taken of each of `receivers` (n, 15), into `out` (n, 3). `first`
     (k, 9) are the boxes to start from; the blockers of light k are the rows from starts[k] to starts[k + 1]."""
-    size = samples + len(first)
+    size = min(samples, MOST) + len(first)
     leaves = Leaves(np.empty((size, 9)), np.empty(size), np.empty(size, np.int64), np.empty(size, np.int64),
                     np.empty(size, np.int64))
     room, near, walls = np.empty((4, 4, 3)), np.empty_like(lights), np.empty_like(blockers)

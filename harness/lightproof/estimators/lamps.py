@@ -19,7 +19,7 @@ from lightproof.estimators import shapes
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import COINCIDES, Disk, Flat, Parallelogram, Sphere, Triangle, placed
 from lightproof.estimators.trigonometry import turn
-from lightproof.estimators.vectors import along, dot, like, norm, scaled, sub, tangents, turned
+from lightproof.estimators.vectors import along, dot, like, norm, product, scaled, sub, tangents, turned
 from lightproof.geometry import Vec3
 
 LEAST = 1e-37  # square of a length [m2]: what is left of smaller ones in float32 is no number
@@ -169,7 +169,7 @@ def _arriving_flat(lamp, x, s, t):
     d = sub(along(along(lamp.shape.center, a, lamp.shape.u), b, lamp.shape.v), x)
     zero, inverse = like(x[0], 0), like(x[0], 1) / dot(d, d)
     before = dot(x, lamp.shape.normal) + lamp.level
-    return max(d[2], zero) * inverse * (max(before, zero) * inverse), d
+    return product(max(d[2], zero) * inverse, max(before, zero) * inverse), d
 
 
 def _arriving_sphere(lamp, x, s, t):
@@ -190,7 +190,7 @@ def _arriving_sphere(lamp, x, s, t):
     d = along(along(scaled(-(radius * down + gap), axis), side * cosine, e1), side * sine, e2)
     per = one / max(dot(d, d), like(s, LEAST))
     cap = like(s, 2 * np.pi) * radius * radius * height
-    return cap * (max(d[2], zero) * per) * (gap * max(one - u, zero) * per), d
+    return cap * product(max(d[2], zero) * per, gap * max(one - u, zero) * per), d
 
 
 def _arriving_point(lamp, x, s, t):

@@ -14,7 +14,7 @@ from numba.extending import overload
 from lightproof.estimators.blockers import INLINED, Plane, hidden
 from lightproof.estimators.lamps import Lamp, arriving, drawable, faced, parameters
 from lightproof.estimators.shapes import Flat, Sphere, covers, placed
-from lightproof.estimators.vectors import like
+from lightproof.estimators.vectors import like, product
 
 
 class Level(NamedTuple):
@@ -71,7 +71,7 @@ def arriving_level(lamp, x, s, t):
     center, u, v = lamp.shape.center, lamp.shape.u, lamp.shape.v
     d = center[0] + a * u[0] + b * v[0] - x[0], center[1] + a * u[1] + b * v[1] - x[1], center[2]
     share = d[2] / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
-    return share * share, d
+    return product(share, share), d
 
 
 @overload(placed)

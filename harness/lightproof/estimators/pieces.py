@@ -49,7 +49,9 @@ class Piece:
 
         size = len(view.receivers)
         tasks = min(max(1, size * points.samples // WORTHWHILE), TASKS)
-        return spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks).T
+        sums = spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks).T
+        np.maximum(sums[1], -sums[0], out=sums[1])  # no value is below 0: what would be is rounding
+        return sums
 
 
 def aimed(scene: Scene, view: View, kind: Callable[[Flat | Sphere, float], Source] = lamps.lamp) -> list[Piece]:
