@@ -22,6 +22,7 @@ from lightproof.scene import Scene
 
 WORTHWHILE = 2**17  # samples: a task takes longer than to hand it to a thread
 FEW = 3  # blockers that are worth a kernel of their own
+LARGEST = float(np.finfo(np.float32).max)
 REACH = 1e4  # sizes of the scene: the length of a shadow ray along a beam or to the sky
 
 Source = Lamp | Point | Beam | Uniform | Cosine | Aim
@@ -51,6 +52,7 @@ class Piece:
         tasks = min(max(1, size * points.samples // WORTHWHILE), TASKS)
         sums = spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks).T
         np.maximum(sums[1], -sums[0], out=sums[1])  # no value is below 0: what would be is rounding
+        sums[2, np.isinf(sums[2])] = LARGEST  # squares beyond float32: their sum is no less
         return sums
 
 
