@@ -37,7 +37,7 @@ class CosineForgotten(McArea):
         refused = super().unsupported(scene) or (scene.surfaces and "this mistake is made without blockers only")
         if refused:
             return refused
-        flat = all(isinstance(shape, Parallelogram) for _, shape, _ in glowing(scene))
+        flat = all(isinstance(glow.shape, Parallelogram) for glow in glowing(scene))
         return None if flat and not bulbs(scene, reach=1.0) else WHAT
 
     def render(self, samples: int, seed: int) -> Rendering:

@@ -20,7 +20,7 @@ from lightproof import suite
 from lightproof.estimators import paths, points
 from lightproof.estimators.blockers import visible
 from lightproof.estimators.estimator import sampled
-from lightproof.estimators.lamps import lamp
+from lightproof.estimators.lamps import Glow, lamp
 from lightproof.estimators.points import Random
 from lightproof.estimators.shapes import Parallelogram, flat, triangulated
 from lightproof.renderers.registry import METHODS
@@ -333,7 +333,7 @@ SQUARE = flat(Parallelogram, np.array([0, 0, 1.0]), np.array([1.0, 0, 0]), np.ar
 
 def comparisons(blockers: tuple) -> int:
     """Floating-point comparisons in the code compiled for a square light and such blockers."""
-    signature = (typeof(lamp(SQUARE, 1.0)), typeof(blockers))
+    signature = (typeof(lamp(Glow("", SQUARE, 1.0))), typeof(blockers))
     compiled = njit(lambda lamp, blockers: visible(blockers, lamp.shape.center, lamp.shape.u))
     compiled.compile(signature)
     return sum("fcmp" in line for line in compiled.inspect_llvm(compiled.signatures[0]).splitlines())

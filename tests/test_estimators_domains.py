@@ -15,12 +15,17 @@ from numba import njit
 from scipy import stats
 
 from lightproof import suite
-from lightproof.estimators import fans, mixed, projected, shapes, subtended
-from lightproof.estimators.lamps import arriving
+from lightproof.estimators import fans, shapes
+from lightproof.estimators.lamps import Glow, arriving, faced, glowing
+from lightproof.estimators.mixed import Mixed
 from lightproof.estimators.options import SAMPLING
 from lightproof.estimators.path import Path
 from lightproof.estimators.points import drawn, opened
+from lightproof.estimators.projected import Projected
+from lightproof.estimators.rng import TICK
+from lightproof.estimators.subtended import Subtended
 from lightproof.estimators.trigonometry import half_turn
+from lightproof.geometry import tangents, unit
 from lightproof.renderers.registry import METHODS, OURS
 from lightproof.scene import Scene
 from lightproof.scene_file import from_table
@@ -49,10 +54,11 @@ def numbers(points, count):
 
 @njit
 def values(source, draws):
-    """What each draw counts, and the vector to its point: (n, 4)."""
+    """What each draw counts at the origin, which faces along z, and the vector to its point: (n, 4)."""
     out = np.empty((len(draws), 4))
+    seen = faced(source, (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 1.0)
     for i in range(len(draws)):
-        f, d = arriving(source, (0.0, 0.0, 0.0), draws[i, 0], draws[i, 1])
+        f, d = arriving(seen, (0.0, 0.0, 0.0), draws[i, 0], draws[i, 1])
         out[i, 0], out[i, 1], out[i, 2], out[i, 3] = f, d[0], d[1], d[2]
     return out
 
@@ -62,9 +68,19 @@ def sampled(source, count: int = 2000, blocks: int = 16) -> np.ndarray:
     return np.vstack([values(source, numbers(SAMPLING["points"]["independent"](count, seed), count)) for seed in range(blocks)])
 
 
-def subtending(shape) -> subtended.Subtended:
-    level = 0.0 if isinstance(shape, shapes.Sphere) else -float(np.dot(shape.center, shape.normal))
-    return subtended.Subtended(shape, 1.0, level)
+def aimed(kind, shape):
+    """An aim of a kind at a shape that emits 1 W/(m2 sr)."""
+    return kind.of(Glow("", shape, 1.0, corners(shape)))
+
+
+def corners(shape) -> np.ndarray | None:
+    """Of a polygon (k, 3)."""
+    if not isinstance(shape, shapes.Triangle | shapes.Parallelogram):
+        return None
+    start, u, v = np.array(shape[:3])
+    if isinstance(shape, shapes.Triangle):
+        return np.array([start, start + u, start + v])
+    return np.array([start + s * u + t * v for s, t in ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))])
 
 
 def spread(shape, side: int) -> tuple[np.ndarray, np.ndarray]:
@@ -105,7 +121,7 @@ def test_flat_lights_are_sampled_by_their_density(name, height):
     shape = FLAT[name]
     center, normal = np.array(shape.center), np.array(shape.normal)
     lifted = shape._replace(center=tuple(center - (1 - height) * (center @ normal) * normal))
-    found = sampled(subtending(lifted))
+    found = sampled(aimed(Subtended, lifted))
     w = found[:, 1:] / np.linalg.norm(found[:, 1:], axis=1, keepdims=True)
     cells = cell(lifted, found[:, 1:], 8)
     points, area = spread(lifted, 800)
@@ -120,10 +136,6 @@ def test_flat_lights_are_sampled_by_their_density(name, height):
         assert found[up, 0] / w[up, 2] == pytest.approx(solid_angle.sum(), rel=2e-3)
 
 
-def projecting(shape) -> projected.Projected:
-    return projected.Projected(*subtending(shape))
-
-
 @pytest.mark.parametrize("drop", [0.0, 0.9, 1.02, 1.25], ids=["zenith", "aside", "cut", "low"])
 @pytest.mark.parametrize("name", ["triangle", "parallelogram"])
 def test_polygons_are_sampled_uniformly_in_projected_solid_angle(name, drop):
@@ -131,7 +143,7 @@ def test_polygons_are_sampled_uniformly_in_projected_solid_angle(name, drop):
     against the integral of the density over each cell; every draw counts the projected solid angle."""
     shape = FLAT[name]
     shape = shape._replace(center=(shape.center[0] - drop / 4, shape.center[1] + drop, shape.center[2] - drop))
-    found = sampled(projecting(shape))
+    found = sampled(aimed(Projected, shape))
     points, area = spread(shape, 800)
     r = np.linalg.norm(points, axis=1)
     seen = area * -(points @ shape.normal) / r**4 * np.maximum(points[:, 2], 0)
@@ -154,7 +166,7 @@ def test_polygons_in_awkward_places_stay_in_reach(name, size):
             center = np.array(place) - s * np.array(shape.u) - t * np.array(shape.v)
             moved = shape._replace(center=tuple(center.tolist()))
             draws = np.random.default_rng(1).random((400, 2)) * 2**32 - 2**31
-            found, other = values(projecting(moved), draws), values(subtending(moved), draws)
+            found, other = (values(aimed(kind, moved), draws) for kind in (Projected, Subtended))
             assert np.isfinite(found).all() and (found[:, 0] >= 0).all()
             error = other[:, 0].std() / 20 + found[:, 0].std() / 20
             assert abs(found[:, 0].mean() - other[:, 0].mean()) <= SIGMAS * error + 1e-9 * found[:, 0].mean()
@@ -162,6 +174,35 @@ def test_polygons_in_awkward_places_stay_in_reach(name, size):
                 a, b = ((found[:, 1:] - center) @ dual for dual in (shape.dual_u, shape.dual_v))
                 outside = np.maximum(abs(a), abs(b)) - 0.5 if name == "parallelogram" else np.max([-a, -b, a + b - 1], axis=0)
                 assert outside.max() < 1e-5
+
+
+@njit
+def mean(source, place, frame, side):
+    """What side x side draws count, one in the middle of each cell of the unit square."""
+    seen = faced(source, place, frame, 1.0)
+    total = 0.0
+    for i in range(side):
+        for j in range(side):
+            s, t = ((i + 0.5) / side - 0.5) / TICK, ((j + 0.5) / side - 0.5) / TICK
+            total += arriving(seen, (0.0, 0.0, 0.0), s, t)[0]
+    return total / side**2
+
+
+@pytest.mark.parametrize("label", ["base", "along", "triangle", "disk"])
+@pytest.mark.parametrize("kind", [Subtended, Projected])
+def test_nearness_adds_no_error(kind, label):
+    """hard-approach, 3.7e-13 m over the middle, an edge and a corner, in frames of no one's axes: the same draws count what they
+    count at 3.7e-7 m, where sixteen digits tell where one is."""
+    scene = case("hard-approach", label)
+    glow, = glowing(scene)
+    exact = CATALOGUE.reference(scene).value
+    far, near = slice(2, None, 5), slice(4, None, 5)
+    errors = []
+    for place, normal, value in zip(scene.film.positions, scene.film.normals, exact, strict=True):
+        axes = *tangents(unit(normal)), unit(normal)
+        frame = tuple(tuple(axis.tolist()) for axis in axes)
+        errors.append(mean(kind.of(glow), tuple(map(float, place)), frame, 400) * glow.radiance / value - 1)
+    assert np.abs(np.array(errors)[near] - np.array(errors)[far]).max() < 2e-6
 
 
 def disk_density(shape, w: np.ndarray) -> np.ndarray:
@@ -181,7 +222,7 @@ def test_spheres_are_sampled_uniformly_in_solid_angle(radius):
     """In its cone, also from 2 cm above it: the cosine from the axis and the turn about it are uniform; what a draw counts per
     cosine is 2 pi (1 - cos(a))."""
     ball = shapes.Sphere(tuple(CENTER), radius)
-    found = sampled(subtending(ball))
+    found = sampled(aimed(Subtended, ball))
     w = found[:, 1:] / np.linalg.norm(found[:, 1:], axis=1, keepdims=True)
     rim = math.sqrt(1 - radius**2 / (CENTER @ CENTER))
     height, turn = around(w, CENTER)
@@ -207,7 +248,7 @@ def test_spheres_are_sampled_uniformly_in_projected_solid_angle():
     """Above the horizon: projected onto the receiver's plane and then, along the normal, onto the circle of the rim, directions
     fill it alike; every draw counts pi sin(a)^2 cos(theta)."""
     ball = shapes.Sphere(tuple(CENTER), 0.5)
-    found = sampled(projected.Projected(ball, 1.0))
+    found = sampled(aimed(Projected, ball))
     w = found[:, 1:] / np.linalg.norm(found[:, 1:], axis=1, keepdims=True)
     r = math.sqrt(CENTER @ CENTER)
     axis, sine, cosine = CENTER / r, 0.5 / r, math.sqrt(1 - 0.25 / r**2)
@@ -253,7 +294,7 @@ def test_mixture_is_sampled_by_its_density(name):
     r = np.linalg.norm(points, axis=1)
     by_cosine = area * np.maximum(points[:, 2], 0) * -(points * normals).sum(axis=1) / (np.pi * r**4)
     expected = np.bincount(place(shape, points, 8), (area / area.sum() + by_cosine) / 2, minlength=64)
-    found = sampled(mixed.Mixed(*subtending(shape)), blocks=64)
+    found = sampled(aimed(Mixed, shape), blocks=64)
     cells = np.where(found[:, 0] > 0, place(shape, found[:, 1:], 8), 64)
     assert p_of(cells, np.append(expected, 1 - expected.sum())) > RARE
 
@@ -261,8 +302,7 @@ def test_mixture_is_sampled_by_its_density(name):
 @pytest.mark.parametrize("name", SHAPES)
 def test_mixture_has_a_mean_and_a_bound(name):
     """What the draws of area and cosine count: the same mean as directions into the light, none above 2 pi."""
-    source = subtending(SHAPES[name])
-    both, alone = (sampled(one, blocks=128)[:, 0] for one in (mixed.Mixed(*source), source))
+    both, alone = (sampled(aimed(kind, SHAPES[name]), blocks=128)[:, 0] for kind in (Mixed, Subtended))
     error = math.hypot(*(one.std() / math.sqrt(len(one)) for one in (both, alone)))
     assert abs(both.mean() - alone.mean()) < SIGMAS * error
     assert both.max() <= 2 * math.pi
@@ -321,10 +361,12 @@ def test_degenerate_lights_are_black():
     assert (films("mc-area", scene, 16, 1) == 0).all()
 
 
-@pytest.mark.parametrize("name", ["hard-approach", "hard-grazing", "hard-touching-edge", "hard-aspect"])
-def test_projected_polygons_have_no_noise(name):
-    """Square lights almost in reach, grazing, and on the horizon: the exact light, but for the noise of grazing ones."""
-    scene = case(name, "base")
+@pytest.mark.parametrize("name, label", [("hard-approach", "base"), ("hard-approach", "along"), ("hard-approach", "triangle"),
+                                         ("hard-grazing", "base"), ("hard-touching-edge", "base"), ("hard-aspect", "base")])
+def test_projected_polygons_have_no_noise(name, label):
+    """Lights almost in reach, also over an edge and a corner, grazing, and on the horizon: the exact light, but for the noise of
+    grazing ones."""
+    scene = case(name, label)
     found, exact = films("mc-projected-solid-angle/float64", scene, 500, 16), CATALOGUE.reference(scene).value
     assert unbiased(found, exact, 1e-9)
     assert (found.std(axis=0) <= (1e-12 if name != "hard-grazing" else 0.05) * exact).all()

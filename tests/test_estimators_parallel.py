@@ -9,7 +9,7 @@ import pytest
 
 from lightproof import suite
 from lightproof.estimators import shapes
-from lightproof.estimators.lamps import Lamp, lamp
+from lightproof.estimators.lamps import Glow, Lamp, lamp
 from lightproof.estimators.mc_area import McArea
 from lightproof.estimators.parallel import Between, Level, levelled
 
@@ -39,10 +39,11 @@ def test_the_same_light_as_without_looking(name, blockers):
 def test_only_what_is_parallel_is_taken_for_it():
     """A lamp over the floor is; one that faces away, lies below or tilts by 1e-15 is not, nor is what is not flat. Blockers by
     themselves: one that tilts, or hangs above the lamp, stays as it was."""
-    over = lamp(flat(1.1), 2.04)
-    globe = lamp(shapes.Sphere((0.0, 0.0, 1.1), 0.2), 2.04)
+    over = lamp(Glow("", flat(1.1), 2.04))
+    globe = lamp(Glow("", shapes.Sphere((0.0, 0.0, 1.1), 0.2), 2.04))
     tilted = flat(0.4, NORTH + 1e-15 * UP)
-    for other in (lamp(flat(1.1, EAST, NORTH), 2.04), lamp(flat(-0.4), 2.04), lamp(tilted, 2.04), globe):
+    others = (lamp(Glow("", shape, 2.04)) for shape in (flat(1.1, EAST, NORTH), flat(-0.4), tilted))
+    for other in (*others, globe):
         assert levelled(other, (flat(0.4),), FLOOR) == (other, (flat(0.4),))
     assert levelled(over, (flat(0.4),), None) == (over, (flat(0.4),))
     found, blockers = levelled(over, (flat(0.4), tilted, flat(1.2)), FLOOR)

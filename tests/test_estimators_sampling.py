@@ -12,7 +12,7 @@ from scipy import stats
 from lightproof import suite
 from lightproof.estimators import shapes
 from lightproof.estimators.directions import cosine_power
-from lightproof.estimators.lamps import arriving, faced, lamp, parameters
+from lightproof.estimators.lamps import Glow, arriving, faced, lamp, parameters
 from lightproof.estimators.lighting import spot_on_sphere
 from lightproof.estimators.meeting import Cosine, Uniform
 from lightproof.estimators.rng import TICK, block_keys, draws, stream, uniform
@@ -135,7 +135,7 @@ def test_sphere_is_sampled_uniformly_over_the_cap_that_faces_the_receiver():
     """Radius 0.31 seen from 0.9 m: height above the cap's rim and angle about the axis are uniform (Archimedes)."""
     center, radius = np.array([0.2, -0.3, 0.8]), 0.31
     draws = (lattice_points(18, 1, BLOCKS, BLOCK)[:, :2] - 0.5) / TICK
-    d = cap_points(lamp(shapes.Sphere(tuple(center), radius), 1.0), (0.0, 0.0, 0.0), draws)
+    d = cap_points(lamp(Glow("", shapes.Sphere(tuple(center), radius), 1.0)), (0.0, 0.0, 0.0), draws)
     assert two_sided(p_uniform(cap_coordinates((d - center) / radius, center, radius), 32))
 
 

@@ -5,26 +5,32 @@ Whatever the precision of the kernel, the way from two draws to a direction is f
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators import shapes
-from lightproof.estimators.lamps import arriving, faced
-from lightproof.estimators.shapes import Flat, Sphere, placed
-from lightproof.estimators.vectors import dot, like, sub
+from lightproof.estimators.lamps import Glow, arriving, faced
+from lightproof.estimators.outlines import clockwise
+from lightproof.estimators.vectors import like
+from lightproof.geometry import Vec3
 
 INLINED = {"forceinline": True}
 
 
 class Aim(NamedTuple):
-    """A shape that emits `strength` [W/(m2 sr)] from its front; `level` [m] is the height of the frame's origin over the plane
-    of a flat one, taken before axes are turned. Each domain is a subclass."""
+    """A shape that emits `strength` [W/(m2 sr)] from its front, with the corners of a polygon as the scene has them; where an
+    element sees it, `shape` is what the domain has for it. Each domain is a subclass."""
 
-    shape: Flat | Sphere
+    shape: Any
     strength: float
-    level: float = 0.0
+    corners: tuple[Vec3, ...] = ()
+
+    @classmethod
+    def of(cls, glow: Glow) -> Aim:
+        """At a piece of a light."""
+        return cls(glow.shape, glow.radiance, () if glow.corners is None else clockwise(glow.corners))
 
     @property
     def power(self) -> float:
@@ -39,20 +45,13 @@ def _faced(lamp, origin, frame, model):
         return None
 
     def face(lamp, origin, frame, model):
-        return kind(placed(lamp.shape, origin, frame, 1.0), like(model, lamp.strength), over(lamp.shape, origin))
+        return kind(beheld(lamp, origin, frame), like(model, lamp.strength), ())
 
     return face
 
 
-def over(shape, point):
-    """Height of a point over the plane of a flat shape [m]."""
-
-
-@overload(over)
-def _over(shape, point):
-    if shape.instance_class is Sphere:
-        return lambda shape, point: 0.0
-    return lambda shape, point: dot(sub(point, shape.center), shape.normal)
+def beheld(lamp, origin, frame):
+    """The shape as seen from `origin` along the axes of `frame`, in float64: each domain's own."""
 
 
 @overload(arriving, jit_options=INLINED)

@@ -19,6 +19,7 @@ from lightproof.estimators.vectors import along, cross, norm, scaled
 from lightproof.geometry import Vec3
 
 VERTICAL = 1e-14  # g_z of a plane that counts as vertical: its ellipse has no area
+LEVEL = 1e-18  # sin^2 of the slope of an edge's plane that counts as the horizon
 STEPS = 60  # bisections at most, where Newton's steps leave the bounds
 CLOSE = 1e-8  # of an arc: the step of Newton's that is the last, for the error of the next is its square
 NONE = (0.0, 0.0, 0.0)  # the plane of no arc
@@ -45,7 +46,8 @@ class Span(NamedTuple):
 
 
 class Sector(NamedTuple):
-    """A span with its projected solid angle, and the sum of what that is the difference of."""
+    """A span with its projected solid angle, and `gross`, what that owes to each radian of its angles: of this it has the
+    rounding."""
 
     span: Span
     area: float
@@ -71,17 +73,16 @@ def swept(normal, a, b):
 def sector(one):
     most = one.outer[2] * swept(one.outer, one.start, one.end) / 2
     least = -one.inner[2] * swept(one.inner, one.start, one.end) / 2
-    return Sector(one, max(most - least, 0.0), most + least)
+    return Sector(one, max(most - least, 0.0), (one.outer[2] - one.inner[2]) / 2)
 
 
 @inlined
-def vertex(p, q, edge, leaves, comes, entry):
+def vertex(p, q, leaves, comes, entry):
     """Where the edge from p to q starts to lie above the horizon; the arc that comes there is the horizon where p does not."""
     up = p[2] >= 0
-    start, end = p if up else entry, cut(p, q, edge) if q[2] < 0 else q
     if not max(p[2], q[2]) >= 0:
-        return Vertex(flat(entry), NONE, NONE, flat(entry))
-    return Vertex(flat(start), leaves, comes if up else HORIZON, flat(end))
+        return Vertex(entry, NONE, NONE, entry)
+    return Vertex(flat(p) if up else entry, leaves, comes if up else HORIZON, cut(p, q, leaves) if q[2] < 0 else flat(q))
 
 
 @inlined
@@ -90,16 +91,12 @@ def flat(p):
 
 
 @inlined
-def cut(p, q, edge):
-    """Where the edge from p to q crosses the horizon, if it does."""
-    return along(p, p[2] / (p[2] - q[2]) if p[2] != q[2] else 0.0, edge)
-
-
-@inlined
-def facing(p, edge):
-    """Normal of the plane through the origin and an edge; none for a point."""
-    g = cross(p, edge)
-    return scaled(1 / max(norm(g), TINY), g)
+def cut(p, q, g):
+    """Under which azimuth the edge from p to q crosses the horizon, if it does; g is its plane's normal. Of an edge on the
+    horizon, where that normal does not tell, somewhere on it."""
+    if not g[0] * g[0] + g[1] * g[1] > LEVEL:
+        return p[0] + q[0], p[1] + q[1]
+    return (g[1], -g[0]) if p[2] >= 0 else (-g[1], g[0])
 
 
 @inlined
@@ -109,25 +106,26 @@ def sinks(p, q):
 
 
 @strict
-def corners(a, b, c, d, ab, bc, cd, da):
-    """The vertices, five at most, of what of a quadrilateral a b c d lies above the horizon; `ab` to `da` are its edges,
-    counter-clockwise around the zenith. Vertices that there are not have no arcs."""
-    g, h, i, j = facing(a, ab), facing(b, bc), facing(c, cd), facing(d, da)
-    low, high = cut(a, b, ab), cut(a, b, ab)
+def vertices(a, b, c, d, planes):
+    """The vertices, five at most, of what of a quadrilateral a b c d lies above the horizon; counter-clockwise around the zenith,
+    as are the normals of the edges' planes, from ab to da, unit vectors or none for a point. Vertices that there are not have
+    no arcs."""
+    g, h, i, j = planes
+    low, high = cut(a, b, g), cut(a, b, g)
     last = g
-    low, last = (cut(b, c, bc), h) if sinks(b, c) else (low, last)
-    low, last = (cut(c, d, cd), i) if sinks(c, d) else (low, last)
-    low, last = (cut(d, a, da), j) if sinks(d, a) else (low, last)
-    high = cut(b, c, bc) if sinks(c, b) else high
-    high = cut(c, d, cd) if sinks(d, c) else high
-    high = cut(d, a, da) if sinks(a, d) else high
+    low, last = (cut(b, c, h), h) if sinks(b, c) else (low, last)
+    low, last = (cut(c, d, i), i) if sinks(c, d) else (low, last)
+    low, last = (cut(d, a, j), j) if sinks(d, a) else (low, last)
+    high = cut(b, c, h) if sinks(c, b) else high
+    high = cut(c, d, i) if sinks(d, c) else high
+    high = cut(d, a, j) if sinks(a, d) else high
     cuts = min(a[2], b[2], c[2], d[2]) < 0 <= max(a[2], b[2], c[2], d[2])
     return (
-        vertex(a, b, ab, g, j, high),
-        vertex(b, c, bc, h, g, high),
-        vertex(c, d, cd, i, h, high),
-        vertex(d, a, da, j, i, high),
-        Vertex(flat(low), HORIZON, last, flat(high)) if cuts else Vertex(flat(a), NONE, NONE, flat(a)),
+        vertex(a, b, g, j, high),
+        vertex(b, c, h, g, high),
+        vertex(c, d, i, h, high),
+        vertex(d, a, j, i, high),
+        Vertex(low, HORIZON, last, high) if cuts else Vertex(flat(a), NONE, NONE, flat(a)),
     )
 
 
@@ -180,9 +178,9 @@ def spans(a, b, c, d, e):
 
 
 @strict
-def sectors(vertices):
-    """The five sectors that a polygon falls into."""
-    a, b, c, d, e = spans(*vertices)
+def sectors(a, b, c, d, planes):
+    """The five sectors that a quadrilateral falls into, by corners and planes as `vertices` has them."""
+    a, b, c, d, e = spans(*vertices(a, b, c, d, planes))
     return sector(a), sector(b), sector(c), sector(d), sector(e)
 
 
@@ -195,7 +193,7 @@ def later(one, area, further):
 
 @strict
 def summed(parts):
-    """The projected solid angle of all sectors, and the sum of what it is the difference of."""
+    """The projected solid angle of all sectors, and what its rounding is relative to."""
     a, b, c, d, e = parts
     return a.area + b.area + c.area + d.area + e.area, a.gross + b.gross + c.gross + d.gross + e.gross
 

@@ -16,8 +16,9 @@ from numba.extending import overload
 
 from lightproof.estimators.compiled import inlined
 from lightproof.estimators.fans import reach, towards
+from lightproof.estimators.outlines import Rim
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import COINCIDES, Disk, Sphere
+from lightproof.estimators.shapes import COINCIDES, Sphere
 from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub, tangents
 from lightproof.geometry import Vec3
@@ -59,10 +60,10 @@ def over_sphere(center, radius):
 
 
 @inlined
-def over_disk(normal, height, offset, radius, aside):
+def over_disk(normal, height, offset, radius, beyond, aside):
     """The cone that a disk subtends at the origin, `height` above its plane; its centre is `offset` from the origin's foot, in
-    the direction of the unit vector `aside`. From h^2 x^2 + (h y - offset z)^2 = radius^2 z^2."""
-    trace = height * height + (offset - radius) * (offset + radius)
+    the direction of the unit vector `aside`; `beyond` is offset^2 - radius^2. h^2 x^2 + (h y - offset z)^2 = radius^2 z^2."""
+    trace = height * height + beyond
     root = math.sqrt(trace * trace + 4 * (height * radius) ** 2)
     large = (root + abs(trace)) / 2
     small = height * radius * (height * radius / large)
@@ -76,23 +77,25 @@ def over_disk(normal, height, offset, radius, aside):
 
 
 @overload(towards, jit_options={"forceinline": True})
-def _towards(shape, level, x, s, t):
-    return {Disk: towards_disk, Sphere: towards_sphere}.get(shape.instance_class)
+def _towards(shape, x, s, t):
+    return {Rim: towards_rim, Sphere: towards_sphere}.get(shape.instance_class)
 
 
-def towards_disk(shape, level, x, s, t):
+def towards_rim(shape, x, s, t):
     """The centre's offset is taken along u where there is none."""
-    height = level + dot(x, shape.normal)
+    height = shape.level + dot(x, shape.normal)
     above, radius = max(height, TINY), norm(shape.u)
     foot = along(sub(shape.center, x), height, shape.normal)
     offset = norm(foot)
     aside = along(foot, TINY, shape.u)
-    per_density, w = inside(over_disk(shape.normal, above, offset, radius, scaled(1 / norm(aside), aside)), s, t)
+    flat = along(x, -dot(x, shape.normal), shape.normal)
+    beyond = shape.beyond + dot(flat, flat) - 2 * dot(flat, shape.center)
+    per_density, w = inside(over_disk(shape.normal, above, offset, radius, beyond, scaled(1 / norm(aside), aside)), s, t)
     longest = above + offset + radius
     return per_density if height > COINCIDES * longest else 0.0, w, reach(w, shape.normal, above, longest)
 
 
-def towards_sphere(shape, level, x, s, t):
+def towards_sphere(shape, x, s, t):
     to = sub(shape.center, x)
     outside = norm(to) > shape.radius
     per_density, w = inside(over_sphere(to, shape.radius), s, t)

@@ -110,7 +110,7 @@ def estimate(lights, blockers, starts, first, receivers, samples, out):
 
 def no_balls(scene: Scene) -> str | None:
     """Whether a light's points are not those of flat shapes."""
-    balls = [owner for owner, shape, _ in lamps.glowing(scene) if isinstance(shape, Sphere)]
+    balls = [glow.owner for glow in lamps.glowing(scene) if isinstance(glow.shape, Sphere)]
     bulbs = [light.id for light in scene.lights if isinstance(light, PointLight | DirectionalLight)]
     found = [*balls, *bulbs]
     return f"it integrates over flat lights, and '{found[0]}' is none; analytic and mc-area can" if found else None
@@ -134,13 +134,13 @@ class Cubature(Estimator):
         self.view = view(scene)
         glowing = lamps.glowing(scene)
         casters = Casters.of(standing(scene))
-        before = [[piece for piece in between(casters, owner, plane_of(shape), self.view.plane).pieces if shapes.area(piece) > 0]
-                  for owner, shape, _ in glowing]
-        far = np.abs(np.array([*(shape.center for _, shape, _ in glowing), *self.view.receivers[:, elements.CENTER]])).max()
-        self.lights = np.array([boxes.row(shape, radiance, far) for _, shape, radiance in glowing]).reshape(-1, boxes.WIDTH)
+        before = [[piece for piece in between(casters, glow.owner, plane_of(glow.shape), self.view.plane).pieces
+                   if shapes.area(piece) > 0] for glow in glowing]
+        far = np.abs(np.array([*(glow.shape.center for glow in glowing), *self.view.receivers[:, elements.CENTER]])).max()
+        self.lights = np.array([boxes.row(glow.shape, glow.radiance, far) for glow in glowing]).reshape(-1, boxes.WIDTH)
         self.blockers = np.array([shafts.row(piece) for pieces in before for piece in pieces]).reshape(-1, shafts.WIDTH)
         self.starts = np.cumsum([0, *map(len, before)])
-        self.first = np.array([box for k, (_, shape, _) in enumerate(glowing) for box in boxes.whole(shape, k)]).reshape(-1, 9)
+        self.first = np.array([box for k, glow in enumerate(glowing) for box in boxes.whole(glow.shape, k)]).reshape(-1, 9)
 
     def warm_up(self) -> None:
         self.render(1, seed=0)

@@ -16,6 +16,7 @@ from numba.extending import overload
 from lightproof import geometry
 from lightproof import scene as scenes
 from lightproof.estimators import shapes
+from lightproof.estimators.compiled import strict
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import COINCIDES, Disk, Flat, Parallelogram, Sphere, Triangle, placed
 from lightproof.estimators.trigonometry import turn
@@ -23,6 +24,16 @@ from lightproof.estimators.vectors import along, dot, like, norm, product, scale
 from lightproof.geometry import Vec3
 
 LEAST = 1e-37  # square of a length [m2]: what is left of smaller ones in float32 is no number
+
+
+class Glow(NamedTuple):
+    """One piece of a light: the light's id, the piece, its radiance [W/(m2 sr)], and of a polygon its corners (k, 3) as the scene
+    has them, which `shape` repeats but for rounding."""
+
+    owner: str
+    shape: Flat | Sphere
+    radiance: float
+    corners: np.ndarray | None = None
 
 
 class Lamp(NamedTuple):
@@ -77,18 +88,24 @@ def bulbs(scene: scenes.Scene, reach: float) -> list[tuple[str, Point | Beam]]:
     return found
 
 
-def glowing(scene: scenes.Scene) -> list[tuple[str, Flat | Sphere, float]]:
-    """Id, shape and radiance [W/(m2 sr)] of every piece of every light with an area; surfaces that emit are lights. A piece
-    whose area is zero emits nothing."""
+def glowing(scene: scenes.Scene) -> list[Glow]:
+    """Every piece of every light with an area; surfaces that emit are lights. A piece whose area is zero emits nothing."""
     lights = [light for light in scene.lights if isinstance(light, scenes.AreaLight)]
     lights += [surface for surface in scene.surfaces if surface.radiance]
-    pieces = [(light.id, shape, light.radiance) for light in lights for shape in shapes.parts(light.shape)]
-    return [piece for piece in pieces if shapes.area(piece[1]) > 0]
+    pieces = [Glow(light.id, shape, light.radiance, corners) for light in lights for shape, corners in cornered(light.shape)]
+    return [piece for piece in pieces if shapes.area(piece.shape) > 0]
 
 
-def lamp(shape: Flat | Sphere, radiance: float) -> Lamp:
-    """A shape that emits `radiance` [W/(m2 sr)]."""
-    return Lamp(shape, radiance if isinstance(shape, Sphere) else radiance * shapes.area(shape))
+def cornered(shape: geometry.Shape) -> list[tuple[Flat | Sphere, np.ndarray | None]]:
+    """A shape in pieces, those of a polygon with their corners."""
+    if isinstance(shape, geometry.Polygon):
+        return [(shapes.facet(corners), corners) for corners in shapes.facets(shape)]
+    return [(piece, None) for piece in shapes.parts(shape)]
+
+
+def lamp(glow: Glow) -> Lamp:
+    """The piece, to be found by its points."""
+    return Lamp(glow.shape, glow.radiance * (1 if isinstance(glow.shape, Sphere) else shapes.area(glow.shape)))
 
 
 def faced(lamp, origin, frame, model):
@@ -111,7 +128,7 @@ def level_of(shape, w):
 
 @overload(level_of)
 def _level_of(shape, w):
-    return beyond if shape.instance_class is Sphere else height
+    return (lambda shape, w: beyond(shape.radius, w)) if shape.instance_class is Sphere else height
 
 
 def height(shape, w):
@@ -120,12 +137,13 @@ def height(shape, w):
     return found if abs(found) > COINCIDES * (norm(w) + norm(shape.u) + norm(shape.v)) else 0.0
 
 
-def beyond(shape, w):
+@strict
+def beyond(radius, w):
     """w^2 - R^2, the largest component by itself, so that nothing cancels along an axis."""
     a, b, c = abs(w[0]), abs(w[1]), abs(w[2])
     most, least = max(a, b, c), min(a, b, c)
     middle = max(min(a, b), min(max(a, b), c))
-    return (most - shape.radius) * (most + shape.radius) + middle * middle + least * least
+    return (most - radius) * (most + radius) + middle * middle + least * least
 
 
 def drawable(shape):

@@ -18,4 +18,4 @@ class McAimed(McArea):
     traces = False
 
     def sources(self, scene: Scene, seen: View) -> list[Piece]:
-        return aimed(scene, seen, self.aim)
+        return aimed(scene, seen, self.aim.of)

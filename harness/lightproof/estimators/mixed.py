@@ -13,11 +13,11 @@ import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators import shapes
-from lightproof.estimators.aims import INLINED, Aim, counted
+from lightproof.estimators.aims import INLINED, Aim, beheld, counted
 from lightproof.estimators.lamps import Facing, arriving, level_of, parameters
 from lightproof.estimators.meeting import GRAZING, around, meet
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import COINCIDES, Sphere, covers
+from lightproof.estimators.shapes import COINCIDES, Sphere, covers, placed
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub
 
 
@@ -25,6 +25,15 @@ class Mixed(Aim):
     """An aim at a light by its area and by the receiver's cosine."""
 
     __slots__ = ()
+
+
+@overload(beheld)
+def _beheld(lamp, origin, frame):
+    return facing if lamp.instance_class is Mixed else None
+
+
+def facing(lamp, origin, frame):
+    return Facing(placed(lamp.shape, origin, frame, 1.0), 1.0, level_of(lamp.shape, sub(origin, lamp.shape.center)))
 
 
 @overload(counted, jit_options=INLINED)
@@ -38,38 +47,40 @@ def counted_mixed(lamp, x, s, t):
     again = 2 * s + (0.5 if first else -0.5) / TICK
     down = again * TICK + 0.5
     w = around(math.sqrt(max(1 - down, 0.0)), down, t)
-    f_area, d_area = by_area(lamp.shape, lamp.level, x, again, t)
-    f_cosine, d_cosine = by_cosine(lamp.shape, lamp.level, x, w)
+    f_area, d_area = by_area(lamp.shape, x, again, t)
+    f_cosine, d_cosine = by_cosine(lamp.shape, x, w)
     f = f_area if first else f_cosine
     return 2 * f / (1 + f / math.pi), d_area if first else d_cosine
 
 
-def by_area(shape, level, x, s, t):
+def by_area(lamp, x, s, t):
     """F of a point drawn over the light, see the module, and the vector to it."""
 
 
 @overload(by_area, jit_options=INLINED)
-def _by_area(shape, level, x, s, t):
-    return sphere_by_area if shape.instance_class is Sphere else flat_by_area
+def _by_area(lamp, x, s, t):
+    return sphere_by_area if lamp.types[0].instance_class is Sphere else flat_by_area
 
 
-def by_cosine(shape, level, x, w):
+def by_cosine(lamp, x, w):
     """F of the point that the direction w meets, 0 where it meets none, and the vector to it."""
 
 
 @overload(by_cosine, jit_options=INLINED)
-def _by_cosine(shape, level, x, w):
-    return sphere_by_cosine if shape.instance_class is Sphere else flat_by_cosine
+def _by_cosine(lamp, x, w):
+    return sphere_by_cosine if lamp.types[0].instance_class is Sphere else flat_by_cosine
 
 
-def flat_by_area(shape, level, x, s, t):
+def flat_by_area(lamp, x, s, t):
+    shape = lamp.shape
     a, b = parameters(shape, s, t)
     d = sub(along(along(shape.center, a, shape.u), b, shape.v), x)
-    return of_flat(shape, level + dot(x, shape.normal), d), d
+    return of_flat(shape, lamp.level + dot(x, shape.normal), d), d
 
 
-def flat_by_cosine(shape, level, x, w):
-    height, o = level + dot(x, shape.normal), sub(x, shape.center)
+def flat_by_cosine(lamp, x, w):
+    shape = lamp.shape
+    height, o = lamp.level + dot(x, shape.normal), sub(x, shape.center)
     approach = -dot(w, shape.normal)
     d = scaled(height / max(approach, GRAZING), w)
     met = covers(shape, dot(o, shape.dual_u) + dot(d, shape.dual_u), dot(o, shape.dual_v) + dot(d, shape.dual_v))
@@ -93,12 +104,13 @@ def _of_flat(shape, height, d):
     return evaluate
 
 
-def sphere_by_area(shape, level, x, s, t):
-    return arriving(Facing(shape, 1.0, level_of(shape, shape.center)), x, s, t)
+def sphere_by_area(lamp, x, s, t):
+    return arriving(lamp, x, s, t)
 
 
-def sphere_by_cosine(shape, level, x, w):
+def sphere_by_cosine(lamp, x, w):
     """By area the cap that faces x is drawn from."""
+    shape = lamp.shape
     met, d = meet(shape, x, w)
     away = sub(x, shape.center)
     r = norm(away)

@@ -12,7 +12,7 @@ from lightproof.estimators.aims import Aim
 from lightproof.estimators.blockers import Casters, between, plane_of, standing
 from lightproof.estimators.estimator import TASKS, spread
 from lightproof.estimators.kernel import estimate
-from lightproof.estimators.lamps import Beam, Lamp, Point
+from lightproof.estimators.lamps import Beam, Glow, Lamp, Point
 from lightproof.estimators.meeting import Cosine, Uniform
 from lightproof.estimators.parallel import Level, levelled
 from lightproof.estimators.points import BLOCK, Grid, Random
@@ -56,16 +56,16 @@ class Piece:
         return sums
 
 
-def aimed(scene: Scene, view: View, kind: Callable[[Flat | Sphere, float], Source] = lamps.lamp) -> list[Piece]:
-    """Every piece of every light, to be aimed at; `kind` makes the source of a shape and its radiance [W/(m2 sr)]."""
-    owned = [(owner, kind(shape, radiance)) for owner, shape, radiance in lamps.glowing(scene)]
+def aimed(scene: Scene, view: View, aim: Callable[[Glow], Source] = lamps.lamp) -> list[Piece]:
+    """Every piece of every light, to be aimed at as the source that `aim` makes of it."""
+    owned = [(glow.owner, aim(glow)) for glow in lamps.glowing(scene)]
     casters = Casters.of(standing(scene))
     return [shadowed(casters, view, owner, source) for owner, source in (*owned, *lamps.bulbs(scene, reach(scene)))]
 
 
 def met(scene: Scene, view: View, kind: type[Uniform | Cosine]) -> list[Piece]:
     """Every piece of every light with an area, and the dome of all skies, to be met by directions."""
-    owned = [(owner, kind(shape, radiance)) for owner, shape, radiance in lamps.glowing(scene)]
+    owned = [(glow.owner, kind(glow.shape, glow.radiance)) for glow in lamps.glowing(scene)]
     dome = skies.dome(scene, reach(scene))
     if dome:
         owned.append(("", kind(dome, 1.0)))

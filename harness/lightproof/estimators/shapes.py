@@ -73,10 +73,10 @@ PER_PARAMETER = {Parallelogram: 1.0, Triangle: 0.5, Disk: np.pi}  # area of the 
 
 
 def parts(shape: geometry.Shape) -> list[Flat | Sphere | Cap]:
-    """A shape of the scene, in pieces. Raises TypeError on a cylinder."""
+    """A shape of the scene, in pieces: a polygon in those of `facets`. Raises TypeError on a cylinder."""
     match shape:
         case geometry.Polygon():
-            return polygon_parts(np.array(shape.vertices))
+            return [facet(corners) for corners in facets(shape)]
         case geometry.Disk():
             t, b = geometry.tangents(np.array(shape.normal))
             return [flat(Disk, np.array(shape.center), shape.radius * t, shape.radius * b)]
@@ -88,13 +88,23 @@ def parts(shape: geometry.Shape) -> list[Flat | Sphere | Cap]:
     raise TypeError(f"no pieces for a {type(shape).__name__}")
 
 
-def polygon_parts(corners: np.ndarray) -> list[Flat]:
-    """One parallelogram where the corners (n, 3) make one, else triangles; nothing where they hold no area."""
+def facets(polygon: geometry.Polygon) -> list[np.ndarray]:
+    """Corners of a polygon's pieces: of one parallelogram (4, 3) where they make one, else of triangles (3, 3); of no piece
+    where they hold no area."""
+    corners = np.array(polygon.vertices)
     if not geometry.vector_area(corners).any():
         return []
     if len(corners) == 4 and np.abs(corners[0] - corners[1] + corners[2] - corners[3]).max() <= PARALLEL * np.ptp(corners):
-        return [flat(Parallelogram, (corners[0] + corners[2]) / 2, corners[1] - corners[0], corners[3] - corners[0])]
-    return [flat(Triangle, a, b - a, c - a) for a, b, c in triangulated(corners)]
+        return [corners]
+    return triangulated(corners)
+
+
+def facet(corners: np.ndarray) -> Flat:
+    """The parallelogram or triangle with these corners."""
+    u, v = corners[1] - corners[0], corners[-1] - corners[0]
+    if len(corners) == 4:
+        return flat(Parallelogram, (corners[0] + corners[2]) / 2, u, v)
+    return flat(Triangle, corners[0], u, v)
 
 
 def triangulated(corners: np.ndarray) -> list[np.ndarray]:

@@ -17,11 +17,11 @@ def touching(scene: Scene) -> str | None:
         return None
     places, contact = elements.receivers(scene.film)[:, CENTER], world.build(scene).contact
     size = contact / world.CONTACT
-    for owner, shape, _ in lamps.glowing(scene):
-        away = outside(shape, places)
+    for glow in lamps.glowing(scene):
+        away = outside(glow.shape, places)
         near = away[(away > COINCIDES * size) & (away <= contact)]
         if len(near):
-            apart = f"'{owner}' is {near.min():.3g} m from a receiver"
+            apart = f"'{glow.owner}' is {near.min():.3g} m from a receiver"
             return f"{apart}, and to its rays what is within {contact:.3g} m touches; path can"
     return None
 
