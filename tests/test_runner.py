@@ -68,6 +68,17 @@ def test_the_ladder(tmp_path):
     assert len({trial.seed for trial in pool.asked}) == 12
 
 
+def test_precisions_share_their_points():
+    """Films of one method in float32 and float64 have one seed; other options, replicates and numbers of samples have others."""
+    def seed(method: str, samples: int = 64, replicate: int = 0) -> int:
+        return Trial("scene", "base", "digest", method, samples, replicate).seed
+
+    assert seed("mc-area") == seed("mc-area/float64") == seed("mc-area/float32")
+    assert seed("mc-area/sobol") == seed("mc-area/sobol-float64")
+    others = [seed("mc-area/sobol"), seed("mc-cosine"), seed("mc-area", samples=256), seed("mc-area", replicate=1)]
+    assert len({seed("mc-area"), *others}) == 5
+
+
 def test_a_decided_verdict_gets_three_steps_for_its_slope(tmp_path):
     """A verdict that stands at once: two more steps, so that error against time is a line."""
     pool = FakePool({"a": 1e-6})

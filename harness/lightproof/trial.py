@@ -5,11 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
 import numpy as np
+
+PRECISIONS = ("float32", "float64")  # options of ours that leave the points of a film alone
 
 
 class Status(StrEnum):
@@ -39,8 +41,16 @@ class Trial:
 
     @property
     def seed(self) -> int:
-        """A seed in [1, 2^31 - 1], derived from the key (some renderers take no zero and no 32nd bit)."""
-        return int(self.key[:16], 16) % (2**31 - 1) + 1
+        """A seed in [1, 2^31 - 1], derived from the key (some renderers take no zero and no 32nd bit). A method's precision has
+        no part in it: its films in float32 and in float64 are of the same points, and differ by rounding alone."""
+        return int(replace(self, method=without_precision(self.method)).key[:16], 16) % (2**31 - 1) + 1
+
+
+def without_precision(method: str) -> str:
+    """A method's name less the option that gives its precision."""
+    name, _, options = method.partition("/")
+    kept = "-".join(option for option in options.split("-") if option not in PRECISIONS)
+    return f"{name}/{kept}" if kept else name
 
 
 @dataclass(frozen=True)

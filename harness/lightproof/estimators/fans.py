@@ -1,10 +1,10 @@
 """Directions to a flat polygon, uniform in its solid angle: a fan of spherical triangles from one corner.
 
-Arvo 1995, "Stratified sampling of spherical triangles", in the form of Peters 2021, "BRDF importance sampling for polygonal
-lights", which needs no inverse function but one arctangent per triangle: a great arc from the fan's corner sweeps over the
-polygon by equal solid angles, and a point of it is drawn with density sin(distance). Solid angles by Van Oosterom and
-Strackee 1983, the determinant from the height above the polygon's plane. No term cancels for small, far or grazing
-triangles; everything is float64, for a receiver almost in the polygon's plane sees the corners almost opposite one another.
+Arvo 1995, "Stratified sampling of spherical triangles": a great arc from the fan's corner sweeps over the polygon by equal
+solid angles, and a point of it is drawn with density sin(distance). Solid angles by Van Oosterom and Strackee 1983, the
+determinant from the height above the polygon's plane, the sum of cosines from the pair of corners that is the most opposite;
+sines and cosines of angles from the moments of edges. One arctangent a triangle is the only inverse function, and no term
+cancels, for small, far and grazing triangles nor 1e-13 m over one. Float64 throughout.
 """
 
 from __future__ import annotations
