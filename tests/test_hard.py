@@ -16,8 +16,9 @@ from lightproof.estimators.mc_area import McArea
 from lightproof.estimators.mc_solid_angle import McSolidAngle
 from lightproof.estimators.textbook import Textbook
 from lightproof.judging import Judge
-from lightproof.reporting import hard, hard_charts, hard_findings, hard_page, hard_spread, page, sweeps
+from lightproof.reporting import hard, hard_charts, hard_findings, hard_page, hard_promises, hard_spread, page, sweeps
 from lightproof.reporting.evaluation import Cell, Evaluation
+from lightproof.reporting.hard_deviation import Deviation
 from lightproof.scene import Scene
 from lightproof.store import Run
 from lightproof.trial import Result, Status, Trial
@@ -189,10 +190,10 @@ def test_what_no_textbook_prints(name, reason):
 
 # The page
 
-def given(method: str, films: np.ndarray, scene: Scene = DISTANCE, **fields: object) -> Cell:
+def given(method: str, films: np.ndarray, scene: Scene = DISTANCE, precision: str = "float32", **fields: object) -> Cell:
     """A cell of films (R, n) of a hard case."""
     kept = [Result(Trial(scene.id, scene.case, scene.digest, method, 64, k), Status.OK, film=film, samples=64,
-                   precision="float32", seconds={"render": 1.0}, **fields) for k, film in enumerate(films)]
+                   precision=precision, seconds={"render": 1.0}, **fields) for k, film in enumerate(films)]
     exact = CATALOGUE.reference(scene)
     return Cell(scene, method, tuple(kept), exact, verdict.judge(kept, exact, scene))
 
@@ -319,8 +320,8 @@ def test_of_a_single_film_nobody_knows_the_noise():
     assert "a single film, of unknown noise," in said
 
 
-def promise_of(word: str, evaluation: Evaluation) -> hard_findings.Promise:
-    (found,) = (promise for promise in hard_findings.promises(hard.rows(evaluation)) if word in promise.text)
+def promise_of(word: str, evaluation: Evaluation) -> hard_promises.Promise:
+    (found,) = (promise for promise in hard_promises.promises(hard.rows(evaluation)) if word in promise.text)
     return found
 
 
@@ -338,6 +339,31 @@ def test_a_promise_that_noise_hides_is_open(share, loss, kept, said):
     assert said in found.text
 
 
+@pytest.mark.parametrize(("loss", "other", "kept", "said"), [
+    (0.0, 0.0, True, "by no more than their scatter. 1e−5 could be seen at every point in 1 of 1 pairs."),
+    (1e-4, 0.0, False, "by more than their scatter by 1e−4 at most, by mc-area on hard-distance at distance to the lamp"),
+    (0.0, 1e-3, None, "by no more than their scatter. 1e−5 could be seen at every point in 0 of 1 pairs."),
+])
+def test_rounding_is_told_apart_from_noise(loss, other, kept, said):
+    """Films of the same points in both precisions, with noise of 40 %: that they differ by nothing or by 1e-4 shows all the same,
+    but not where each has noise of its own."""
+    random, value = np.random.default_rng(5), EXACT.value
+    films = value * (1 + 0.4 * random.normal(size=(16, len(value))))
+    single = given("mc-area", films + value * (other * random.normal(size=films.shape) - loss))
+    found = promise_of("Rounding alone", judged_on([DISTANCE], single, given("mc-area/float64", films, precision="float64")))
+    assert found.kept is kept
+    assert said in found.text
+
+
+def test_rounding_needs_films_of_the_same_points():
+    """Of one method in both precisions, and of replicates and samples that both have; of others there is nothing to tell."""
+    films = np.array([result.film for result in scattered(0.4).results])
+    for name, others in (("mc-area/sobol-float64", films), ("mc-area/float64", films[:1])):
+        double = given(name, others, precision="float64")
+        told = hard_promises.promises(hard.rows(judged_on([DISTANCE], given("mc-area", films), double)))
+        assert not any("Rounding alone" in promise.text for promise in told)
+
+
 def test_what_analytic_was_not_asked_keeps_its_promise_open():
     exact = given("analytic", CATALOGUE.reference(STRIPS[0]).value[None], STRIPS[0], deterministic=True)
     assert promise_of("analytic", judged_on(STRIPS[:1], exact)).kept is True
@@ -348,7 +374,7 @@ def test_films_that_are_alike_may_have_missed_one_dark_sample_in_a_thousand():
     """1,024 samples, each of 1.001 times the light: if one in a thousand were black, the mean would be right, and there were no
     such sample among them once in three runs. Of 1.1 times the light the same cannot be."""
     for excess, certain in ((1.001, False), (1.1, True)):
-        alike = hard.Deviation(given("mc-cosine", np.tile(excess * EXACT.value, (16, 1))))
+        alike = Deviation(given("mc-cosine", np.tile(excess * EXACT.value, (16, 1))))
         assert (alike.systematic > 0).all() == alike.off == certain
 
 
@@ -400,7 +426,7 @@ def test_a_page_says_whose_variance_explodes_and_whose_does_not():
 def test_the_deviation_of_one_sample_is_that_of_the_films_times_the_root_of_their_samples():
     """Noise of 0.25 of the light in films of 64 samples is one of 2 in a sample; where 1,024 of them miss 0.99 of the light, each
     of those that would bring it is worth 32 x 0.99 at least, and its point is hollow."""
-    even = hard_spread.Spread(hard.Deviation(scattered(0.25)))
+    even = hard_spread.Spread(Deviation(scattered(0.25)))
     assert even.relative.mean() == pytest.approx(2, rel=0.15)
     films = 0.01 * EXACT.value * (1 + 1e-4 * np.arange(16)[:, None])
     lacking = given("lacking", films, peak=1e12 * EXACT.value)

@@ -11,7 +11,8 @@ import pandas as pd
 
 from lightproof.reporting import hard_spread
 from lightproof.reporting.charts import COLOURS, LEGEND, SHAPES, decades, finished, log_scale, looks
-from lightproof.reporting.hard import Deviation, Group, Row, Square
+from lightproof.reporting.hard import Group, Row, Square
+from lightproof.reporting.hard_deviation import Deviation
 from lightproof.reporting.wording import number
 
 FLOOR = 1e-17  # smaller errors are drawn here

@@ -10,11 +10,12 @@ from typing import Any
 
 import jinja2
 
-from lightproof.reporting import hard, hard_charts, hard_findings, hard_spread, sweeps
+from lightproof.reporting import hard, hard_charts, hard_findings, hard_promises, hard_spread, sweeps
 from lightproof.reporting.colours import ColourMap
 from lightproof.reporting.evaluation import Evaluation
 from lightproof.reporting.hard import Group, Row, Square
-from lightproof.reporting.hard_findings import Promise
+from lightproof.reporting.hard_deviation import short
+from lightproof.reporting.hard_promises import FOIL, Promise
 
 LEAST, MOST = -16, 0  # powers of ten at the colours' ends
 # YlOrRd (C. Brewer, colorbrewer2.org) after a pale grey: ever darker, so that no hue need be told from another.
@@ -45,7 +46,7 @@ class HardPage:
 
     @property
     def promises(self) -> list[Promise]:
-        return hard_findings.promises(self.rows)
+        return hard_promises.promises(self.rows)
 
     @property
     def precisions(self) -> list[str]:
@@ -57,7 +58,7 @@ class HardPage:
     @property
     def naive(self) -> bool:
         """Whether the textbook's formulas are in the run."""
-        return any(method.partition("/")[0] == hard_findings.FOIL for method in self.methods)
+        return any(method.partition("/")[0] == FOIL for method in self.methods)
 
     @property
     def bar(self) -> str:
@@ -67,7 +68,7 @@ class HardPage:
     @property
     def ticks(self) -> list[str]:
         """Labels under the gradient."""
-        return [hard.short(10.0**power) for power in range(LEAST, MOST + 1, 4)]
+        return [short(10.0**power) for power in range(LEAST, MOST + 1, 4)]
 
     def findings(self, group: Group) -> dict[str, list[str]]:
         return hard_findings.findings(group)

@@ -8,7 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from lightproof.reporting.hard import Deviation, Group, Row, Square
+from lightproof.reporting.hard import Group, Row, Square
+from lightproof.reporting.hard_deviation import Deviation
 from lightproof.reporting.hard_findings import BROKEN, missing, where
 
 MOST = 10  # times the exact light: what the standard deviation of one sample may be
