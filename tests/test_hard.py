@@ -341,7 +341,7 @@ def test_a_promise_that_noise_hides_is_open(share, loss, kept, said):
 
 @pytest.mark.parametrize(("loss", "other", "kept", "said"), [
     (0.0, 0.0, True, "by no more than their scatter. 1e−5 could be seen at every point in 1 of 1 pairs."),
-    (1e-4, 0.0, False, "by more than their scatter by 1e−4 at most, by mc-area on hard-distance at distance to the lamp"),
+    (1e-4, 0.0, False, "by up to 1e−4 beyond their scatter, of mc-area on hard-distance at distance to the lamp"),
     (0.0, 1e-3, None, "by no more than their scatter. 1e−5 could be seen at every point in 0 of 1 pairs."),
 ])
 def test_rounding_is_told_apart_from_noise(loss, other, kept, said):
@@ -353,6 +353,16 @@ def test_rounding_is_told_apart_from_noise(loss, other, kept, said):
     found = promise_of("Rounding alone", judged_on([DISTANCE], single, given("mc-area/float64", films, precision="float64")))
     assert found.kept is kept
     assert said in found.text
+
+
+def test_black_films_tell_nothing_of_rounding():
+    """Where light is due and neither precision met any, their films are alike."""
+    dark = EXACT.value * (sweeps.values(DISTANCE) >= 1)
+    single, double = (given(name, np.tile(dark, (16, 1)) + 1e-6 * dark * np.arange(16)[:, None], precision=precision)
+                      for name, precision in (("mc-area", "float32"), ("mc-area/float64", "float64")))
+    found = promise_of("Rounding alone", judged_on([DISTANCE], single, double))
+    assert found.kept is None
+    assert "in 0 of 1 pairs" in found.text
 
 
 def test_rounding_needs_films_of_the_same_points():

@@ -9,9 +9,10 @@ import pytest
 from test_store import RUN, SCENES, trial
 
 from lightproof import store, suite
+from lightproof.estimators.options import SAMPLING
 from lightproof.renderers.registry import Entry
 from lightproof.runner import Cell, Decision, Progress, Runner
-from lightproof.trial import Result, Status, Trial
+from lightproof.trial import PRECISIONS, Result, Status, Trial
 
 SCENE = suite.default().scene("point-light")
 REPLICATES = 4
@@ -75,6 +76,8 @@ def test_precisions_share_their_points():
 
     assert seed("mc-area") == seed("mc-area/float64") == seed("mc-area/float32")
     assert seed("mc-area/sobol") == seed("mc-area/sobol-float64")
+    assert seed("mc-area/sobol") == seed("mc-area/float64-sobol")
+    assert set(PRECISIONS) == set(SAMPLING["precision"])
     others = [seed("mc-area/sobol"), seed("mc-cosine"), seed("mc-area", samples=256), seed("mc-area", replicate=1)]
     assert len({seed("mc-area"), *others}) == 5
 

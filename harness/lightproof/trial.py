@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-PRECISIONS = ("float32", "float64")  # options of ours that leave the points of a film alone
+PRECISIONS = ("float32", "float64")  # options of our methods that leave the points of a film alone
 
 
 class Status(StrEnum):

@@ -5,14 +5,15 @@ Whatever the precision of the kernel, the way from two draws to a direction is f
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators import shapes
-from lightproof.estimators.lamps import Glow, arriving, faced
-from lightproof.estimators.outlines import clockwise
+from lightproof.estimators.lamps import Facing, Glow, arriving, faced
+from lightproof.estimators.outlines import Facet, Rim, clockwise
+from lightproof.estimators.shapes import Flat, Sphere
 from lightproof.estimators.vectors import like
 from lightproof.geometry import Vec3
 
@@ -23,7 +24,7 @@ class Aim(NamedTuple):
     """A shape that emits `strength` [W/(m2 sr)] from its front, with the corners of a polygon as the scene has them; where an
     element sees it, `shape` is what the domain has for it. Each domain is a subclass."""
 
-    shape: Any
+    shape: Flat | Sphere | Facet | Rim | Facing
     strength: float
     corners: tuple[Vec3, ...] = ()
 

@@ -13,9 +13,8 @@ import math
 from typing import NamedTuple
 
 from lightproof.estimators.compiled import inlined, strict
-from lightproof.estimators.fans import TINY
 from lightproof.estimators.trigonometry import half_turn, series
-from lightproof.estimators.vectors import along, cross, norm, scaled
+from lightproof.estimators.vectors import TINY, along, cross, norm, scaled
 from lightproof.geometry import Vec3
 
 VERTICAL = 1e-14  # g_z of a plane that counts as vertical: its ellipse has no area

@@ -23,7 +23,7 @@ from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub, tangents
 from lightproof.geometry import Vec3
 
-TINY = 1e-100  # of a metre: a receiver nearer to a disk's plane is taken for this near
+NEAREST = 1e-100  # of a metre: a receiver nearer to a disk's plane is taken for this near
 
 
 class Cone(NamedTuple):
@@ -62,7 +62,8 @@ def over_sphere(center, radius):
 @inlined
 def over_disk(normal, height, offset, radius, beyond, aside):
     """The cone that a disk subtends at the origin, `height` above its plane; its centre is `offset` from the origin's foot, in
-    the direction of the unit vector `aside`; `beyond` is offset^2 - radius^2. h^2 x^2 + (h y - offset z)^2 = radius^2 z^2."""
+    the direction of the unit vector `aside`; `beyond` is offset^2 - radius^2. From h^2 x^2 + (h y - offset z)^2 =
+    radius^2 z^2."""
     trace = height * height + beyond
     root = math.sqrt(trace * trace + 4 * (height * radius) ** 2)
     large = (root + abs(trace)) / 2
@@ -84,10 +85,10 @@ def _towards(shape, x, s, t):
 def towards_rim(shape, x, s, t):
     """The centre's offset is taken along u where there is none."""
     height = shape.level + dot(x, shape.normal)
-    above, radius = max(height, TINY), norm(shape.u)
+    above, radius = max(height, NEAREST), norm(shape.u)
     foot = along(sub(shape.center, x), height, shape.normal)
     offset = norm(foot)
-    aside = along(foot, TINY, shape.u)
+    aside = along(foot, NEAREST, shape.u)
     flat = along(x, -dot(x, shape.normal), shape.normal)
     beyond = shape.beyond + dot(flat, flat) - 2 * dot(flat, shape.center)
     per_density, w = inside(over_disk(shape.normal, above, offset, radius, beyond, scaled(1 / norm(aside), aside)), s, t)

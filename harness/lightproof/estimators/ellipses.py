@@ -19,8 +19,7 @@ import numpy as np
 
 from lightproof.estimators.boxes import KIND, U, density, part
 from lightproof.estimators.compiled import strict
-from lightproof.estimators.fans import TINY
-from lightproof.estimators.vectors import norm
+from lightproof.estimators.vectors import TINY, norm
 from lightproof.estimators.world import DISK, PARALLELOGRAM
 
 ORDERS = np.array([(1, 1, 1, 1), (2, 2, 2, 2), (3, 3, 5, 5)])  # nodes along p, q, s, t of a coarse to a fine rule

@@ -4,7 +4,7 @@ Arvo 1995, "Stratified sampling of spherical triangles": a great arc from the fa
 solid angles, and a point of it is drawn with density sin(distance). Solid angles by Van Oosterom and Strackee 1983, the
 determinant from the height above the polygon's plane, the sum of cosines from the pair of corners that is the most opposite;
 sines and cosines of angles from the moments of edges. One arctangent a triangle is the only inverse function, and no term
-cancels, for small, far and grazing triangles nor 1e-13 m over one. Float64 throughout.
+cancels, for small, far and grazing triangles, nor from next to one, as far as `outlines` knows where that is. Float64 throughout.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from typing import NamedTuple
 from numba.extending import overload
 
 from lightproof.estimators.compiled import inlined
-from lightproof.estimators.outlines import TINY, Edge, Facet, about
+from lightproof.estimators.outlines import Edge, Facet, about
 from lightproof.estimators.shapes import COINCIDES
 from lightproof.estimators.trigonometry import half_turn, series
-from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub
+from lightproof.estimators.vectors import TINY, along, cross, dot, norm, scaled, sub
 from lightproof.geometry import Vec3
 
 NEAREST = 1e-100  # of a metre: a receiver nearer to a corner is taken for this near
 
 
 class Sector(NamedTuple):
-    """A spherical triangle a b c by its solid angle, the unit vector to a, the moment of the line ab [m], the arc's sine over its
-    length [1/m] and the arc's cosine, and sine and cosine of the angle at b, times the moments of its sides [m2]."""
+    """A spherical triangle a b c by its solid angle, the unit vector to a, the moment of the line ab [m], the arc's sine over
+    that moment's length [1/m] and the arc's cosine, and sine and cosine of the angle at b times its sides' moments [m2]."""
 
     angle: float
     apex: Vec3
@@ -137,7 +137,7 @@ def towards_facet(shape, x, s, t):
     early = angle < first.angle
     w = within(first if early else second, angle if early else angle - first.angle, t)
     longest = max(norm(a), norm(b), norm(c), norm(d))
-    return total if height > COINCIDES * longest else 0.0, w, reach(w, shape.normal, height, longest)
+    return total if height > COINCIDES * longest else 0.0, w, reach(w, shape.normal, above, longest)
 
 
 @inlined

@@ -28,7 +28,7 @@ LEAST = 1e-37  # square of a length [m2]: what is left of smaller ones in float3
 
 class Glow(NamedTuple):
     """One piece of a light: the light's id, the piece, its radiance [W/(m2 sr)], and of a polygon its corners (k, 3) as the scene
-    has them, which `shape` repeats but for rounding."""
+    has them, which `shape` repeats but for 1e-12 of its size."""
 
     owner: str
     shape: Flat | Sphere
@@ -53,10 +53,10 @@ class Tile(NamedTuple):
 
 
 class Facing(NamedTuple):
-    """A lamp as seen from an element. `level` is what float32 could not tell from the rest: the element's height over the plane
-    of a flat shape [m], or the square of its distance from a sphere's centre less that of the radius [m2]."""
+    """A lamp as seen from an element. `level` is what turned coordinates could not tell from the rest: the element's height over
+    the plane of a flat shape [m], or the square of its distance from a sphere's centre less that of the radius [m2]."""
 
-    shape: Tile | Triangle | Disk | Sphere
+    shape: Tile | Flat | Sphere
     strength: float
     level: float
 
@@ -92,15 +92,9 @@ def glowing(scene: scenes.Scene) -> list[Glow]:
     """Every piece of every light with an area; surfaces that emit are lights. A piece whose area is zero emits nothing."""
     lights = [light for light in scene.lights if isinstance(light, scenes.AreaLight)]
     lights += [surface for surface in scene.surfaces if surface.radiance]
-    pieces = [Glow(light.id, shape, light.radiance, corners) for light in lights for shape, corners in cornered(light.shape)]
+    pieces = [Glow(light.id, shape, light.radiance, corners)
+              for light in lights for shape, corners in shapes.cornered(light.shape)]
     return [piece for piece in pieces if shapes.area(piece.shape) > 0]
-
-
-def cornered(shape: geometry.Shape) -> list[tuple[Flat | Sphere, np.ndarray | None]]:
-    """A shape in pieces, those of a polygon with their corners."""
-    if isinstance(shape, geometry.Polygon):
-        return [(shapes.facet(corners), corners) for corners in shapes.facets(shape)]
-    return [(piece, None) for piece in shapes.parts(shape)]
 
 
 def lamp(glow: Glow) -> Lamp:

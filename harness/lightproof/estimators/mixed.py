@@ -53,34 +53,34 @@ def counted_mixed(lamp, x, s, t):
     return 2 * f / (1 + f / math.pi), d_area if first else d_cosine
 
 
-def by_area(lamp, x, s, t):
+def by_area(seen, x, s, t):
     """F of a point drawn over the light, see the module, and the vector to it."""
 
 
 @overload(by_area, jit_options=INLINED)
-def _by_area(lamp, x, s, t):
-    return sphere_by_area if lamp.types[0].instance_class is Sphere else flat_by_area
+def _by_area(seen, x, s, t):
+    return sphere_by_area if seen.types[0].instance_class is Sphere else flat_by_area
 
 
-def by_cosine(lamp, x, w):
+def by_cosine(seen, x, w):
     """F of the point that the direction w meets, 0 where it meets none, and the vector to it."""
 
 
 @overload(by_cosine, jit_options=INLINED)
-def _by_cosine(lamp, x, w):
-    return sphere_by_cosine if lamp.types[0].instance_class is Sphere else flat_by_cosine
+def _by_cosine(seen, x, w):
+    return sphere_by_cosine if seen.types[0].instance_class is Sphere else flat_by_cosine
 
 
-def flat_by_area(lamp, x, s, t):
-    shape = lamp.shape
+def flat_by_area(seen, x, s, t):
+    shape = seen.shape
     a, b = parameters(shape, s, t)
     d = sub(along(along(shape.center, a, shape.u), b, shape.v), x)
-    return of_flat(shape, lamp.level + dot(x, shape.normal), d), d
+    return of_flat(shape, seen.level + dot(x, shape.normal), d), d
 
 
-def flat_by_cosine(lamp, x, w):
-    shape = lamp.shape
-    height, o = lamp.level + dot(x, shape.normal), sub(x, shape.center)
+def flat_by_cosine(seen, x, w):
+    shape = seen.shape
+    height, o = seen.level + dot(x, shape.normal), sub(x, shape.center)
     approach = -dot(w, shape.normal)
     d = scaled(height / max(approach, GRAZING), w)
     met = covers(shape, dot(o, shape.dual_u) + dot(d, shape.dual_u), dot(o, shape.dual_v) + dot(d, shape.dual_v))
@@ -104,13 +104,13 @@ def _of_flat(shape, height, d):
     return evaluate
 
 
-def sphere_by_area(lamp, x, s, t):
-    return arriving(lamp, x, s, t)
+def sphere_by_area(seen, x, s, t):
+    return arriving(seen, x, s, t)
 
 
-def sphere_by_cosine(lamp, x, w):
+def sphere_by_cosine(seen, x, w):
     """By area the cap that faces x is drawn from."""
-    shape = lamp.shape
+    shape = seen.shape
     met, d = meet(shape, x, w)
     away = sub(x, shape.center)
     r = norm(away)

@@ -2,6 +2,8 @@
 
 A receiver 1e-13 m over an edge sees the light beside that edge, and turned coordinates are good to 1e-17 m: corners are those
 of the scene, not of a map; an edge's line is known by its moment p x e, p any point of it; a rim by how far one is beyond it.
+Over corners, and over edges and rims along the scene's axes, no digit is lost. Elsewhere the light is good to about 1e-16 m over
+the distance, which is how well coordinates tell where a receiver is.
 """
 
 from __future__ import annotations
@@ -13,11 +15,9 @@ from numba.extending import overload
 
 from lightproof.estimators.compiled import inlined
 from lightproof.estimators.lamps import beyond
-from lightproof.estimators.shapes import Disk, Sphere, placed
-from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub, turned
+from lightproof.estimators.shapes import Disk, Parallelogram, Sphere, Triangle, placed
+from lightproof.estimators.vectors import TINY, along, cross, dot, norm, scaled, sub, turned
 from lightproof.geometry import Vec3
-
-TINY = 1e-280  # keeps a quotient from 0/0
 
 
 class Edge(NamedTuple):
@@ -30,8 +30,8 @@ class Edge(NamedTuple):
 
 class Facet(NamedTuple):
     """A quadrilateral a b c d, clockwise about its normal, with the `level` of the element's centre over its plane [m]. `edges`
-    are ab, bc, cd, da and the diagonal ac; `sines` of the angles that a line turns by from ab to bc and from ac to cd. Of a
-    triangle c and d are one."""
+    are ab, bc, cd, da and the diagonal ac; `sines` of the angles that a line turns by from ab to bc and from ac to cd. A
+    triangle is one whose c and d are the same, so that all polygons have one way."""
 
     corners: tuple[Vec3, Vec3, Vec3, Vec3]
     edges: tuple[Edge, Edge, Edge, Edge, Edge]
@@ -63,7 +63,7 @@ def outlined(shape, corners, origin, frame):
 
 @overload(outlined)
 def _outlined(shape, corners, origin, frame):
-    return {Sphere: sphere, Disk: rim}.get(shape.instance_class, facet)
+    return {Sphere: sphere, Disk: rim, Parallelogram: facet, Triangle: facet}[shape.instance_class]
 
 
 def sphere(shape, corners, origin, frame):

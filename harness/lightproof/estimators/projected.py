@@ -17,12 +17,12 @@ from lightproof.estimators.aims import INLINED, Aim, beheld, counted
 from lightproof.estimators.azimuths import inside, sectors, summed
 from lightproof.estimators.compiled import inlined, strict
 from lightproof.estimators.cones import entry, over_sphere, towards
-from lightproof.estimators.fans import TINY, reach
+from lightproof.estimators.fans import reach
 from lightproof.estimators.outlines import Facet, Rim, about, outlined
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import COINCIDES, Sphere
 from lightproof.estimators.trigonometry import turn
-from lightproof.estimators.vectors import along, dot, norm, scaled, sub
+from lightproof.estimators.vectors import TINY, along, dot, norm, scaled, sub
 
 SURE = 1e-7  # of what its rounding is relative to: a smaller projected solid angle is not sure of nine digits
 
@@ -87,7 +87,7 @@ def by_azimuth(shape, x, s, t):
     height = shape.level + dot(x, shape.normal)
     a, b, c, d = sub(shape.corners[0], x), sub(shape.corners[1], x), sub(shape.corners[2], x), sub(shape.corners[3], x)
     ab, bc, cd, da, _ = shape.edges
-    parts = sectors(a, b, c, d, (facing(ab, x), facing(bc, x), facing(cd, x), facing(da, x)))
+    parts = sectors(a, b, c, d, (plane(ab, x), plane(bc, x), plane(cd, x), plane(da, x)))
     total, gross = summed(parts)
     longest = max(norm(a), norm(b), norm(c), norm(d))
     if not (total > SURE * gross and height > COINCIDES * longest):
@@ -97,7 +97,7 @@ def by_azimuth(shape, x, s, t):
 
 
 @inlined
-def facing(edge, x):
+def plane(edge, x):
     """Normal of the plane through x and an edge; none for a point."""
     g = about(edge, x).moment
     return scaled(1 / max(norm(g), TINY), g)

@@ -14,10 +14,9 @@ from lightproof.estimators import gauss, shafts
 from lightproof.estimators.boxes import CENTER, FLAW, NORMAL, RADIANCE, SLIP, density, hull, part, reaches, spot
 from lightproof.estimators.compiled import strict
 from lightproof.estimators.ellipses import ORDERS, errors
-from lightproof.estimators.fans import TINY
 from lightproof.estimators.shafts import HIDDEN, SEEN
 from lightproof.estimators.shapes import COINCIDES
-from lightproof.estimators.vectors import dot, norm, scaled, sub
+from lightproof.estimators.vectors import TINY, dot, norm, scaled, sub
 
 HIGHEST = ORDERS.max()
 NODES, WEIGHTS = gauss.table(HIGHEST)

@@ -11,9 +11,8 @@ import math
 
 from lightproof.estimators.boxes import part
 from lightproof.estimators.compiled import strict
-from lightproof.estimators.fans import TINY
 from lightproof.estimators.shapes import Flat, Sphere
-from lightproof.estimators.vectors import along, dot, norm, scaled, sub, tangents
+from lightproof.estimators.vectors import TINY, along, dot, norm, scaled, sub, tangents
 from lightproof.estimators.world import DISK, KINDS, PARALLELOGRAM, SPHERE
 
 KIND, CENTER, NORMAL, DUAL_U, DUAL_V, RADIUS, WIDTH = 0, 1, 4, 7, 10, 13, 14  # columns of a blocker

@@ -73,18 +73,23 @@ PER_PARAMETER = {Parallelogram: 1.0, Triangle: 0.5, Disk: np.pi}  # area of the 
 
 
 def parts(shape: geometry.Shape) -> list[Flat | Sphere | Cap]:
-    """A shape of the scene, in pieces: a polygon in those of `facets`. Raises TypeError on a cylinder."""
+    """A shape of the scene, in pieces. Raises TypeError on a cylinder."""
+    return [piece for piece, _ in cornered(shape)]
+
+
+def cornered(shape: geometry.Shape) -> list[tuple[Flat | Sphere | Cap, np.ndarray | None]]:
+    """A shape of the scene, in pieces, those of a polygon with their corners. Raises TypeError on a cylinder."""
     match shape:
         case geometry.Polygon():
-            return [facet(corners) for corners in facets(shape)]
+            return [(over(corners), corners) for corners in facets(shape)]
         case geometry.Disk():
             t, b = geometry.tangents(np.array(shape.normal))
-            return [flat(Disk, np.array(shape.center), shape.radius * t, shape.radius * b)]
+            return [(flat(Disk, np.array(shape.center), shape.radius * t, shape.radius * b), None)]
         case geometry.Sphere():
-            return [Sphere(shape.center, shape.radius)]
+            return [(Sphere(shape.center, shape.radius), None)]
         case geometry.Cap():
             axis = tuple(map(float, geometry.unit(shape.axis)))
-            return [Cap(shape.center, shape.radius, axis, float(np.cos(np.radians(shape.half_angle))))]
+            return [(Cap(shape.center, shape.radius, axis, float(np.cos(np.radians(shape.half_angle)))), None)]
     raise TypeError(f"no pieces for a {type(shape).__name__}")
 
 
@@ -99,7 +104,7 @@ def facets(polygon: geometry.Polygon) -> list[np.ndarray]:
     return triangulated(corners)
 
 
-def facet(corners: np.ndarray) -> Flat:
+def over(corners: np.ndarray) -> Flat:
     """The parallelogram or triangle with these corners."""
     u, v = corners[1] - corners[0], corners[-1] - corners[0]
     if len(corners) == 4:

@@ -9,9 +9,8 @@ from numba.extending import overload
 
 from lightproof.estimators.compiled import fast, inlined
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.vectors import like
+from lightproof.estimators.vectors import TINY, like
 
-TINY = 1e-280  # keeps a quotient from 0/0
 EIGHTH = math.tan(math.pi / 8)
 ARCTANGENT = tuple((-1) ** k / (2 * k + 1) for k in reversed(range(21)))  # to the last digit up to EIGHTH
 TERMS = {4: 6, 8: 12}  # bytes of a float -> terms of the Taylor series that reach its last digit up to pi/2

@@ -10,6 +10,8 @@ from numba.extending import overload
 
 from lightproof.estimators.compiled import strict
 
+TINY = 1e-280  # keeps a quotient from 0/0
+
 
 def like(model, number):
     """`number`, a constant, in the floating-point type of `model`: a bare literal would promote float32 to float64."""

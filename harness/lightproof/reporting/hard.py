@@ -11,7 +11,9 @@ import numpy as np
 
 from lightproof.reporting import sweeps
 from lightproof.reporting.evaluation import Cell, Evaluation
-from lightproof.reporting.hard_deviation import Deviation, place, short
+from lightproof.reporting.hard_deviation import Deviation
+from lightproof.reporting.sweeps import place
+from lightproof.reporting.wording import short
 from lightproof.scene import Scene
 from lightproof.trial import Status
 from lightproof.verdict import Outcome
@@ -128,4 +130,3 @@ def groups(found: Sequence[Row]) -> list[Group]:
 
 def _kind(found: str) -> str:
     return "NaN" if "nan" in found else "∞" if "inf" in found else "< 0"
-

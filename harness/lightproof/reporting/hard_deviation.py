@@ -8,15 +8,14 @@ from functools import cached_property
 import numpy as np
 
 from lightproof import statistics
-from lightproof.reporting import sweeps
 from lightproof.reporting.evaluation import Cell
-from lightproof.reporting.wording import number, percent
-from lightproof.scene import Scene
+from lightproof.reporting.sweeps import place
+from lightproof.reporting.wording import number, signed
 
 ROUNDING = 1e-5  # a smaller systematic error may be that of float32
 LEVEL = 1e-4  # chance that noise alone makes any point of a cell look systematically off
 ALIKE = 1e-12  # of a value: the standard error of films that do not differ
-PRECISIONS = {"float64": np.float64, "float32": np.float32, "float16": np.float16}
+FORMATS = {"float64": np.float64, "float32": np.float32, "float16": np.float16}
 
 
 @dataclass(frozen=True)
@@ -120,7 +119,7 @@ class Deviation:
     def ulps(self) -> np.ndarray | None:
         """Error (n,) in units in the last place of the exact value in the method's precision, NaN where that is zero; None where
         its precision is not a floating-point format."""
-        precision = PRECISIONS.get(self.cell.final[0].precision)
+        precision = FORMATS.get(self.cell.final[0].precision)
         if precision is None:
             return None
         exact = self.cell.reference.value
@@ -152,35 +151,3 @@ class Deviation:
     def _in_ulps(self, at: int) -> str:
         known = self.ulps is not None and np.isfinite(self.ulps[at])
         return f", {number(self.ulps[at], 2)} units in the last place of {self.cell.final[0].precision}" if known else ""
-
-
-def place(scene: Scene, element: int) -> str:
-    """An element by the sweep's parameter, or by its number."""
-    values, sweep = sweeps.values(scene), sweeps.of(scene)
-    if values is None:
-        return f"at point {element}"
-    return f"at {sweep.parameter} {amount(values[element], sweep.unit)} (point {element})"
-
-
-def amount(value: float, unit: str) -> str:
-    """A parameter's value."""
-    text = number(float(value), 2).removeprefix("1 × ") if not 1e-3 <= value < 1e4 else f"{value:.4g}"
-    return f"{text}{' ' if unit and unit != '°' else ''}{unit}"
-
-
-def short(value: float) -> str:
-    """A magnitude in as few letters as tell it: 2e-16, 0.3, 40."""
-    if not np.isfinite(value):
-        return "∞"
-    if 0.095 <= value < 9.5:
-        return f"{value:.1f}".removesuffix(".0")
-    if 9.5 <= value < 999.5:
-        return f"{value:.0f}"
-    mantissa, _, power = f"{value:.0e}".partition("e")
-    return f"{mantissa}e{int(power)}".replace("-", "\N{MINUS SIGN}")
-
-
-def signed(value: float) -> str:
-    """An error: in per cent where that is short."""
-    sign = "+" if value > 0 else ""
-    return f"{sign}{percent(value)}" if 1e-4 <= abs(value) < 100 else f"{sign}{number(float(value), 2)}"

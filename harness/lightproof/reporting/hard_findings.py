@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from lightproof.reporting.hard import Group, Row, Square
-from lightproof.reporting.hard_deviation import Deviation, amount, short
+from lightproof.reporting.hard_deviation import Deviation
 from lightproof.reporting.sweeps import Sweep
-from lightproof.reporting.wording import percent, unbroken
+from lightproof.reporting.wording import amount, percent, short, unbroken
 from lightproof.verdict import Outcome
 
 BROKEN, SAID = 0.01, "1 %"  # a systematic error worth a sentence

@@ -14,8 +14,8 @@ from lightproof.reporting import hard, hard_charts, hard_findings, hard_promises
 from lightproof.reporting.colours import ColourMap
 from lightproof.reporting.evaluation import Evaluation
 from lightproof.reporting.hard import Group, Row, Square
-from lightproof.reporting.hard_deviation import short
 from lightproof.reporting.hard_promises import FOIL, Promise
+from lightproof.reporting.wording import short
 
 LEAST, MOST = -16, 0  # powers of ten at the colours' ends
 # YlOrRd (C. Brewer, colorbrewer2.org) after a pale grey: ever darker, so that no hue need be told from another.

@@ -8,15 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from lightproof.renderers.registry import METHODS, OURS
-from lightproof.reporting import hard_deviation
 from lightproof.reporting.hard import Row, Square
-from lightproof.reporting.hard_deviation import place, short
+from lightproof.reporting.hard_deviation import ROUNDING
 from lightproof.reporting.hard_findings import BROKEN, SAID, absence
 from lightproof.reporting.hard_rounding import Rounding, roundings
+from lightproof.reporting.sweeps import place
+from lightproof.reporting.wording import short
 from lightproof.trial import Status
 
-ROUNDING = 1e-12  # that `analytic` may have
-SINGLE_PRECISION = hard_deviation.ROUNDING  # that Monte Carlo in float32 may have
+EXACT = 1e-12  # what `analytic` may be off by
+SINGLE_PRECISION = ROUNDING  # what Monte Carlo in float32 may be off by
 FOIL = "textbook"
 
 
@@ -36,7 +37,7 @@ def promises(rows: Sequence[Row]) -> list[Promise]:
     drawn = [square for square in ours if square.deviation and not square.deviation.certain
              and square.cell.final[0].precision == "float32"]
     exact = [square for row in rows for square in row.squares if square.method == "analytic"]
-    found = (_exact(exact), _single(drawn), _alone(roundings(rows)), _light(ours), *_foil(rows))
+    found = (_exact(exact), _single(drawn), _alone(roundings(ours)), _light(ours), *_foil(rows))
     return [promise for promise in found if promise]
 
 
@@ -52,8 +53,8 @@ def _exact(exact: Sequence[Square]) -> Promise | None:
     worst = max(measured, key=lambda square: square.deviation.level)
     level, units = worst.deviation.level, f" ({worst.ulps})" if worst.ulps else ""
     open_ = f"; {unknown} more have no result" if unknown else ""
-    return Promise(False if level > ROUNDING else None if unknown else True,
-                   f"analytic, in float64, is within {short(ROUNDING)} of each exact value: in the {len(measured)} cases measured"
+    return Promise(False if level > EXACT else None if unknown else True,
+                   f"analytic, in float64, is within {short(EXACT)} of each exact value: in the {len(measured)} cases measured"
                    f" the worst is {short(level)}{units}, on {worst.cell.scene.name} {worst.deviation.place}{open_}.")
 
 
@@ -82,7 +83,7 @@ def _alone(found: Sequence[Rounding]) -> Promise | None:
     largest, at, cell = worst.systematic.max(), int(np.argmax(worst.systematic)), worst.single
     seeing = sum(one.noise.max() <= SINGLE_PRECISION for one in found)
     least = short(SINGLE_PRECISION)
-    beyond = (f"by more than their scatter by {short(largest)} at most, by {cell.method} on {cell.scene.name}"
+    beyond = (f"by up to {short(largest)} beyond their scatter, of {cell.method} on {cell.scene.name}"
               f" {place(cell.scene, at)}") if largest > 0 else "by no more than their scatter"
     return Promise(False if largest > SINGLE_PRECISION else True if seeing == len(found) else None,
                    f"Rounding alone shifts no light of Monte Carlo in float32 by more than {least}: films of the same points in"

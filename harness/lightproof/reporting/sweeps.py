@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lightproof.geometry import Disk, Polygon, Sphere, unit
+from lightproof.reporting.wording import amount
 from lightproof.scene import Scene
 
 BASE = "base"
@@ -142,3 +143,11 @@ def values(scene: Scene) -> np.ndarray | None:
     """The parameter (n,) of a scene's points; None without one."""
     sweep = of(scene)
     return sweep and sweep.value(scene)
+
+
+def place(scene: Scene, element: int) -> str:
+    """An element by the sweep's parameter, or by its number."""
+    parameter, sweep = values(scene), of(scene)
+    if parameter is None:
+        return f"at point {element}"
+    return f"at {sweep.parameter} {amount(parameter[element], sweep.unit)} (point {element})"

@@ -101,3 +101,27 @@ def unbroken(text: str) -> str:
 def multiple(value: float) -> str:
     """How many times: two digits, of large ones three; 0.83, 4.2, 87, 1,340."""
     return f"{float(f'{value:.3g}'):,.0f}" if value >= 99.5 else number(value, 2)
+
+
+def amount(value: float, unit: str) -> str:
+    """A value with its unit: 0.37 m, 10⁻⁹ m, 45°."""
+    text = number(float(value), 2).removeprefix("1 × ") if not 1e-3 <= value < 1e4 else f"{value:.4g}"
+    return f"{text}{' ' if unit and unit != '°' else ''}{unit}"
+
+
+def short(value: float) -> str:
+    """A magnitude in as few letters as tell it: 2e-16, 0.3, 40."""
+    if not math.isfinite(value):
+        return "∞"
+    if 0.095 <= value < 9.5:
+        return f"{value:.1f}".removesuffix(".0")
+    if 9.5 <= value < 999.5:
+        return f"{value:.0f}"
+    mantissa, _, power = f"{value:.0e}".partition("e")
+    return f"{mantissa}e{int(power)}".replace("-", "\N{MINUS SIGN}")
+
+
+def signed(value: float) -> str:
+    """An error: in per cent where that is short."""
+    sign = "+" if value > 0 else ""
+    return f"{sign}{percent(value)}" if 1e-4 <= abs(value) < 100 else f"{sign}{number(float(value), 2)}"
