@@ -355,6 +355,18 @@ def test_lights_from_a_micrometre_to_a_light_second_away(name, label):
     assert (found.std(axis=0, ddof=1) * math.sqrt(2000) < 3 * exact).all()
 
 
+@pytest.mark.parametrize(("name", "scene", "label"), [
+    ("mc-cosine", "hard-approach", "sphere"), ("mc-hemisphere", "hard-approach", "sphere"),
+    ("mc-area", "hard-grazing", "sliver"), ("mc-area", "hard-grazing", "setting"),
+])
+def test_float32_shifts_no_light(name, scene, label):
+    """Next to a sphere, and where a horizon leaves next to nothing of a lamp: films of the same points in float64 are the same
+    in the mean but for 5e-6."""
+    exact = CATALOGUE.reference(case(scene, label)).value
+    single, double = (films(each, case(scene, label), 65536, 8) for each in (name, f"{name}/float64"))
+    assert (np.abs((single - double).mean(axis=0)) <= 5e-6 * exact).all()
+
+
 def test_degenerate_lights_are_black():
     """hard-degenerate-light: a polygon of no area gives zero, not NaN."""
     scene = case("hard-degenerate-light", "base")

@@ -7,6 +7,8 @@ from functools import partial
 import numpy as np
 
 from lightproof.estimators.estimator import sampled
+from lightproof.estimators.horizons import cut
+from lightproof.estimators.lamps import Lamp
 from lightproof.estimators.limits import no_caps, no_cylinders, no_glowing_inside, no_reflections, no_skies, no_solid_angle
 from lightproof.estimators.paths import Paths
 from lightproof.estimators.peaks import largest
@@ -21,7 +23,8 @@ SEEDS = 2**24  # streams that one seed has for the pieces of lights
 
 
 class McArea(Sampling):
-    """Beside the kernel's views, what cameras see by paths of one reflection, which trace the first ray."""
+    """Beside the kernel's views, what cameras see by paths of one reflection, which trace the first ray. Lights that a horizon
+    cuts are float64."""
 
     domain = "area of the light"
     density = "1/A per area, uniform over the light; of a sphere, over the cap that faces the receiver"
@@ -31,6 +34,8 @@ class McArea(Sampling):
         super().build(scene)
         self.receivers = self.view.receivers if self.view else None
         self.shares = shares([piece.power for piece in self.pieces])
+        self.models = [np.float64(1) if isinstance(piece.lamp, Lamp) and cut(piece.lamp.shape, self.view) else self.real(1)
+                       for piece in self.pieces]
         self.paths = None if self.view else self.followed(scene)
 
     def followed(self, scene: Scene) -> Paths:
@@ -51,7 +56,7 @@ class McArea(Sampling):
     def drawn(self, index: int, samples: int, seed: int) -> tuple[np.ndarray, int, np.ndarray | None]:
         """Film (n,) of one piece alone, samples taken, and its variance (n,)."""
         points = self.points(samples, int(seed) * SEEDS + index)
-        pivots, totals, squares = self.view.factor * self.pieces[index].sums(self.view, points, self.real(1), self.threads)
+        pivots, totals, squares = self.view.factor * self.pieces[index].sums(self.view, points, self.models[index], self.threads)
         variance = self.variance(totals, self.view.factor * squares, points.samples)
         return (pivots + totals) / points.samples, points.samples, variance
 

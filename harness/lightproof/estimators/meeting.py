@@ -177,12 +177,13 @@ def _meet_ball(light, x, w):
 
 @fast
 def met(sphere, level, x, w):
-    """From outside, where `level` is positive; `foot` leads from the ray's nearest point to the centre."""
+    """From outside, where `level` is positive; `foot` leads from the ray's nearest point to the centre. The square of half the
+    chord is R^2 - foot^2, or from nearby, where those are almost the same, reach^2 - level."""
     o = sub(sphere.center, x)
     reach = dot(o, w)
     foot = sub(o, scaled(reach, w))
-    zero = like(reach, 0)
-    rest = sphere.radius * sphere.radius - dot(foot, foot)
+    zero, square = like(reach, 0), sphere.radius * sphere.radius
+    rest = reach * reach - level if level < square else square - dot(foot, foot)
     ahead = (rest > zero) & (reach > zero) & (level > zero)
     d = scaled(level / max(reach + math.sqrt(max(rest, zero)), like(reach, GRAZING)), w)
     return like(reach, 1) if ahead else zero, d
