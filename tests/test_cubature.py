@@ -44,6 +44,14 @@ def test_the_exact_light_lies_within_the_bound(samples):
         assert (error <= rendering.bound + reference.uncertainty).all(), (scene.id, scene.case)
 
 
+@pytest.mark.parametrize("name", ["hard-aspect:long-1e3", "hard-distance:disk"])
+def test_additions_do_not_add_up(name):
+    """65,536 points of a lamp 2 km long, and of one 100,000 km away: what their sum rounds off is less than the bound."""
+    scene = CATALOGUE.scene(name)
+    rendering, reference = opened(scene).render(65536, 0), CATALOGUE.reference(scene)
+    assert (np.abs(rendering.film - reference.value) <= rendering.bound + reference.uncertainty).all()
+
+
 @pytest.mark.parametrize(("name", "factor"), [("square-light", 0.03), ("disk-light", 1e-3), ("occluded-square", 0.45)])
 def test_the_bound_shrinks(name, factor):
     """16 times the points: by N^-1/3 where an element sees a shadow's edge, far faster where it sees none."""

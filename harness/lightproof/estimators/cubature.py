@@ -76,17 +76,27 @@ def halve(box, other, at):
 
 @strict
 def gathered(leaves, count, lights, blockers, starts, cell, room):
-    """Irradiance, and the bound of its error [W/m2]: undecided boxes may hold nothing, or all that they can."""
-    value, error, held, most = 0.0, 0.0, 0.0, 0.0
+    """Irradiance, and the bound of its error [W/m2]: undecided boxes may hold nothing, or all that they can. What a million
+    additions round off is added last."""
+    value, rest, error, held, most = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(count):
         number = leaves.heap[k]
         box, bound = leaves.boxes[number], leaves.bounds[number]
         if leaves.kinds[number] >= SMOOTH:
             one, lost = summed(box, leaves.kinds[number], lights[int(box[8])], cell)
-            value, error = value + one, error + bound + lost
+            (value, off), error = added(value, one), error + bound + lost
+            rest += off
         else:
             held, most = held + min(likely(box, lights, blockers, starts, cell, room), bound), most + bound
-    return value + held, error + max(held, most - held)
+    return value + rest + held, error + max(held, most - held)
+
+
+@strict
+def added(a, b):
+    """a + b rounded, and what that is less than the sum (Knuth 1969, 4.2.2)."""
+    total = a + b
+    part = total - a
+    return total, (a - (total - part)) + (b - part)
 
 
 @strict_kernel
