@@ -99,8 +99,10 @@ def test_replicates_that_are_none_are_noticed(command, fault):
 
 
 def lightproof(*arguments: object, **options) -> subprocess.Popen:
+    """The command in a process of its own, which heeds an interrupt even where the tests run in the background, deaf to it."""
     command = [sys.executable, "-m", "lightproof.cli", *map(str, arguments)]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL), **options)
 
 
 def lines_of(path: Path) -> int:
