@@ -77,7 +77,7 @@ def climb(track: Track, scene: Scene, scale: Scale, entry: Entry, limit: Limit) 
     samples = FIRST
     while samples <= MOST:
         films.append(Film(entry, scene, samples))
-        results.append(track.render(films[-1], 0))
+        results.append(track.steady(films[-1], 0))
         if results[-1].status is not Status.OK or limit.ends(*steps(results, scale)):
             break
         samples *= FACTOR

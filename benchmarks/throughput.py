@@ -24,7 +24,7 @@ RESOLUTION = (128, 96)
 MANY, FEW = 2048, 64  # samples per element: of what is compared with Mitsuba, and with the slower renderers
 BY_HAND = Path(__file__).parent / "mitsuba_loop.py"
 LOOP = Entry("mitsuba-loop", f"{BY_HAND}:Loop", worker="mitsuba-loop", extra="mitsuba")
-BUNDLE = Entry("mitsuba-bundle", f"{BY_HAND}:Bundle", worker="mitsuba-loop", extra="mitsuba")
+BUNDLE = Entry("mitsuba-bundle", f"{BY_HAND}:Bundle", worker="mitsuba-bundle", extra="mitsuba")
 CHOOSING = 3  # rounds that choose Mitsuba's configuration, at half the samples
 
 

@@ -90,11 +90,12 @@ def test_unknown_configurations_list_the_known_ones(adapter, known):
 
 @pytest.mark.parametrize("adapter", [mitsuba_configurations, cycles])
 def test_every_configuration_is_a_method(adapter):
-    """The registry has each by name; all but the best are left to the night."""
+    """The registry has each by name, in a process of its own; all but the best are left to the night."""
     name = adapter.__name__.rpartition(".")[2].partition("_")[0]
     entries = {key: entry for key, entry in METHODS.items() if key.partition("/")[0] == name}
     assert {key.partition("/")[2] for key in entries} == set(adapter.CONFIGURATIONS)
     assert [key for key, entry in entries.items() if not entry.nightly] == [name]
+    assert len({entry.worker for entry in entries.values()}) == len(entries)
 
 
 @pytest.mark.parametrize(("name", "scene", "reason"), [

@@ -52,7 +52,7 @@ class Piece:
         tasks = min(max(1, size * points.samples // WORTHWHILE), TASKS)
         sums = spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks).T
         np.maximum(sums[1], -sums[0], out=sums[1])  # no value is below 0: what would be is rounding
-        sums[2, np.isinf(sums[2])] = LARGEST  # squares beyond float32: their sum is no less
+        np.minimum(sums[2], LARGEST, out=sums[2])  # squares beyond float32: their sum is no less
         return sums
 
 
