@@ -47,7 +47,7 @@ class Loop(Mitsuba):
         elements = int(np.prod(self.film.resolution))
         lanes = min(MOST, max(1, LANES // elements), samples)
         each = -(-samples // lanes)
-        self.dr.kernel_history_clear()
+        self._watch(samples)
         total = self._summed(elements, lanes, each, seed)
         film = np.array(self.dr.block_sum(total, lanes), float) / (lanes * each)
         return Rendering(film, lanes * each, seconds={"compile": self._compiling()})

@@ -44,7 +44,6 @@ class Mitsuba(Method):
         self.mi.set_variant(self.variant)
         self.mi.set_log_level(self.mi.LogLevel.Error)
         self.dr.set_thread_count(self.threads)
-        self.dr.set_flag(self.dr.JitFlag.KernelHistory, True)
 
     def version(self) -> str:
         return self.mi.__version__
@@ -67,6 +66,7 @@ class Mitsuba(Method):
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()
+        self.counts: set[int] = set()
         self.views = views.views(scene)
         self.integrator = integrator(scene, self.configuration.search)
         self.sampler = self.mi.load_dict({"type": self.configuration.sampler})
@@ -81,7 +81,7 @@ class Mitsuba(Method):
         passes = math.ceil(samples / max(1, min(PASS, WAVEFRONT // (columns * rows))))
         per_pass = self._strata(math.ceil(samples / passes))
         seeds = np.random.SeedSequence(seed).generate_state(passes * len(self.views)).reshape(-1, passes)
-        self.dr.kernel_history_clear()
+        self._watch(samples)
         film = [view.elements(np.mean([self._image(scene, per_pass, each) for each in row], axis=0))
                 for view, scene, row in zip(self.views, self.scenes, seeds, strict=True)]
         return Rendering(np.concatenate(film), samples=passes * per_pass, seconds={"compile": self._compiling()})
@@ -94,8 +94,15 @@ class Mitsuba(Method):
         self.sampler.set_sample_count(samples)
         return self.sampler.sample_count()
 
+    def _watch(self, samples: int) -> None:
+        """Keep a history of kernels where films of so many samples are new, and their kernels may be: it takes a tenth of the
+        time that a film takes."""
+        self.dr.set_flag(self.dr.JitFlag.KernelHistory, samples not in self.counts)
+        self.dr.kernel_history_clear()
+        self.counts.add(samples)
+
     def _compiling(self) -> float:
-        """Seconds spent on kernels since the history was cleared."""
+        """Seconds spent on kernels since they are watched; none where they are not."""
         return sum(kernel.get("codegen_time", 0) + kernel.get("backend_time", 0) for kernel in self.dr.kernel_history()) / 1e3
 
     def _view(self, view: View) -> dict[str, Any]:
