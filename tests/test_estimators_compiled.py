@@ -9,6 +9,8 @@ import sys
 from pathlib import Path
 
 import numba
+import numpy as np
+from numba.core.codegen import get_host_cpu_features
 
 from lightproof.estimators import compiled
 
@@ -46,6 +48,23 @@ def test_digest_changes_with_any_source(tmp_path):
     (folder / "new.py").rename(folder / "newer.py")
     seen.append(compiled.digest(folder))
     assert len(set(seen)) == 4
+
+
+def test_the_widest_registers_are_used():
+    """Where a processor has 512 bits, loops take them; it is asked of no other."""
+    assert compiled.wide("+avx2,+avx512f,+fma") == "+avx2,+avx512f,+fma,-prefer-256-bit"
+    assert [compiled.wide(features) for features in ("", "+avx2,-avx512f", "+neon")] == ["", "+avx2,-avx512f", "+neon"]
+
+    @compiled.fast
+    def total(values):
+        found = np.float32(0)
+        for value in values:
+            found += value * value
+        return found
+
+    total(np.ones(100, np.float32))
+    assembly = next(iter(total.inspect_asm().values()))
+    assert ("zmm" in assembly) == ("+avx512f" in get_host_cpu_features().split(","))
 
 
 def test_folder_respects_the_user_s_cache(tmp_path, monkeypatch):
