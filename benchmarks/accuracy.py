@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from endings import FACTOR, Limit
+from endings import CLAIMED, FACTOR, Limit
 from ladders import DETERMINISTIC, ERRORS, SINGLE, Ladder, ladders
 from lightproof import suite
 from lightproof.references import ReferenceError
@@ -29,7 +29,6 @@ FIRST, MOST = 1, 4**15  # samples per element
 STRETCH = 6  # times the seconds of a renderer's film, for that which may lead beyond a claimed error
 OURS_SHARE = 0.2  # of a renderer's time that a film of ours may take: there are many of them, and the best need far less
 CHOICE_SHARE = 0.2  # of a renderer's time that a film may take while its configuration is chosen
-CHOICE = 0.001  # error that a configuration is chosen for
 
 Add = Callable[[Iterable[Row]], None]
 
@@ -90,15 +89,16 @@ def steps(results: Iterable[Result], scale: Scale) -> tuple[list[float], list[fl
 
 
 def best(track: Track, scene: Scene, scale: Scale, add: Add) -> list[Entry]:
-    """Each renderer's configuration that comes soonest to an error of `CHOICE`, by a ladder of one film a step."""
+    """Each renderer's configurations that take part."""
     return [entry for configurations in renderers().values()
-            if (entry := choice(track, scene, scale, track.there(configurations), add))]
+            for entry in chosen(track, scene, scale, track.there(configurations), add)]
 
 
-def choice(track: Track, scene: Scene, scale: Scale, configurations: Sequence[Entry], add: Add) -> Entry | None:
-    """The best of a renderer's configurations; the only one without a try; None where there is none, or none that can."""
+def chosen(track: Track, scene: Scene, scale: Scale, configurations: Sequence[Entry], add: Add) -> list[Entry]:
+    """Those of a renderer's configurations that come soonest to an error that claims are about, by a ladder of one film a step;
+    the only one without a try; none where none can."""
     if len(configurations) < 2:
-        return configurations[0] if configurations else None
+        return list(configurations)
     found: dict[Entry, Ladder] = {}
     seconds = CHOICE_SHARE * track.seconds
     for entry in configurations:
@@ -106,11 +106,11 @@ def choice(track: Track, scene: Scene, scale: Scale, configurations: Sequence[En
         tried = [row for film, result in zip(films, results, strict=True) for row in rows(film, ok(result), scale)]
         for one in ladders(tried):
             found[entry] = one
-    chosen = min(found, key=lambda entry: found[entry].time_to(CHOICE), default=None)
-    add(Row("choice", scene.name, entry.name, "rms error", CHOICE, "render", "s", estimate=Estimate(one.time_to(CHOICE)),
-            note=", ".join(filter(None, (one.kind(CHOICE), "chosen" if entry == chosen else ""))))
-        for entry, one in found.items())
-    return chosen
+    soonest = {error: min(found, key=lambda entry: found[entry].time_to(error)) for error in CLAIMED if found}
+    add(Row("choice", scene.name, entry.name, "rms error", error, "render", "s", estimate=Estimate(one.time_to(error)),
+            note=", ".join(filter(None, (one.kind(error), "chosen" if entry == first else ""))))
+        for error, first in soonest.items() for entry, one in found.items())
+    return list(dict.fromkeys(soonest.values()))
 
 
 def ok(result: Result) -> list[Result]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from lightproof.estimators.compiled import STRICT  # and with it the registers that kernels take
+
 LENGTH, CHAIN = 1024, 8  # numbers that stay in the first cache; multiply-adds of each between load and store
 
 
-@njit(fastmath={"contract"}, nogil=True, error_model="numpy")
+@njit(fastmath=STRICT, nogil=True, error_model="numpy")
 def multiply_add(values, factor, summand, rounds):
     """`CHAIN` multiply-adds of each of `values` (LENGTH,) float32, `rounds` times."""
     for _ in range(rounds):

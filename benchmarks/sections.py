@@ -62,9 +62,15 @@ def _once(rows: Sequence[Row]) -> Callable[[str], list[str]]:
 
 def choice(rows: Sequence[Row]) -> list[Part]:
     """What every configuration came to, and which took part."""
-    body = [[row.scene, row.method, wording.count(row.median) if row.unit == "samples/s" else wording.seconds(row.median),
-             row.note] for row in rows if row.phase == "render" and math.isfinite(row.median)]
-    return [Part("Tried", None, ("scene", "configuration", "samples/s, or time to 0.1 %", ""), body)] if body else []
+    tried = [row for row in rows if row.phase == "render" and math.isfinite(row.median)]
+    body = [[row.scene, row.method, *_reached(row), row.note] for row in tried]
+    return [Part("Tried", None, ("scene", "configuration", "to", "time, or samples/s", ""), body)] if body else []
+
+
+def _reached(row: Row) -> tuple[str, str]:
+    """An error and the time to it, or how many samples a second."""
+    rate = row.unit == "samples/s"
+    return ("", wording.count(row.median)) if rate else (f"{100 * row.value:g} %", wording.seconds(row.median))
 
 
 def accuracy(rows: Sequence[Row]) -> list[Part]:
