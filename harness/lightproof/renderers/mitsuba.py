@@ -66,7 +66,7 @@ class Mitsuba(Method):
 
     def prepare(self, scene: Scene) -> Mapping[str, float]:
         start = time.perf_counter()
-        self.counts: set[int] = set()
+        self.rendered: set[int] = set()  # samples that films of this scene had
         self.views = views.views(scene)
         self.integrator = integrator(scene, self.configuration.search)
         self.sampler = self.mi.load_dict({"type": self.configuration.sampler})
@@ -97,9 +97,9 @@ class Mitsuba(Method):
     def _watch(self, samples: int) -> None:
         """Keep a history of kernels where films of so many samples are new, and their kernels may be: it takes a tenth of the
         time that a film takes."""
-        self.dr.set_flag(self.dr.JitFlag.KernelHistory, samples not in self.counts)
+        self.dr.set_flag(self.dr.JitFlag.KernelHistory, samples not in self.rendered)
         self.dr.kernel_history_clear()
-        self.counts.add(samples)
+        self.rendered.add(samples)
 
     def _compiling(self) -> float:
         """Seconds spent on kernels since they are watched; none where they are not."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Container
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
 from lightproof.checked import shown
@@ -35,17 +35,11 @@ def _sampling(name: str, target: str, quick: Container[str] = ()) -> list[Entry]
     return [_ours(f"{name}/{option}" if option else name, target, nightly=option not in quick) for option in options]
 
 
-def _mitsuba(option: str) -> Entry:
-    """A configuration, in a process of its own: Dr.Jit's kernels are made for every object that is alive in a process, so that
-    each further configuration costs the films of all others 0.2 ms and 3 % of their time."""
-    name = f"mitsuba/{option}"
-    return Entry(name, "lightproof.renderers.mitsuba:Mitsuba", worker=name, extra="mitsuba", nightly=True)
-
-
-def _cycles(option: str) -> Entry:
-    """A configuration, in a process of its own: Blender holds one file at a time."""
-    name = f"cycles/{option}"
-    return Entry(name, "lightproof.renderers.cycles:Cycles", worker=name, extra="cycles", nightly=True)
+def _apart(renderer: str, target: str, options: Iterable[str]) -> list[Entry]:
+    """Configurations, each in a process of its own: Blender holds one file at a time, and Dr.Jit makes kernels for every object
+    that is alive in a process, so that another configuration beside would cost a film of Mitsuba's 0.2 ms and 3 % of its time."""
+    names = [f"{renderer}/{option}" for option in options]
+    return [Entry(name, f"lightproof.renderers.{target}", worker=name, extra=renderer, nightly=True) for name in names]
 
 
 def _radiance(option: str) -> Entry:
@@ -72,10 +66,10 @@ METHODS = {
         _ours("textbook", "textbook:Textbook", nightly=True),
         _ours("textbook/float32", "textbook:Textbook", nightly=True),
         Entry("mitsuba", "lightproof.renderers.mitsuba:Mitsuba", worker="mitsuba", extra="mitsuba"),
-        *map(_mitsuba, ("scalar", "spectral", "independent", "stratified", "orthogonal", "sobol", "emitter-sampling", "mis",
-                        "path")),
+        *_apart("mitsuba", "mitsuba:Mitsuba", ("scalar", "spectral", "independent", "stratified", "orthogonal", "sobol",
+                                               "emitter-sampling", "mis", "path")),
         Entry("cycles", "lightproof.renderers.cycles:Cycles", worker="cycles", extra="cycles"),
-        *map(_cycles, ("lamp", "mesh", "light-tree", "blue-noise", "automatic")),
+        *_apart("cycles", "cycles:Cycles", ("lamp", "mesh", "light-tree", "blue-noise", "automatic")),
         Entry("luxcore", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore"),
         Entry("luxcore/random", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
         Entry("luxcore/bidirectional", "lightproof.renderers.luxcore:LuxCore", worker="luxcore", extra="luxcore", nightly=True),
