@@ -18,6 +18,7 @@ from lightproof.method import Method
 from lightproof.scene import Scene
 
 TASKS = 64  # pieces of work for one film, at most: fixed, so that the number of threads changes nothing
+TRACED = 2**9  # samples that follow rays: a task of them takes longer than to hand it to a thread
 
 
 class Estimator(Method):
@@ -52,9 +53,14 @@ class Estimator(Method):
 
 
 def sampled(add: Callable, size: int, samples: int, threads: int) -> tuple[np.ndarray, int, np.ndarray | None]:
-    """Film, samples and variance of a kernel that adds up values and their squares."""
-    sums = spread(add, size, samples, 2, threads)
+    """Film, samples and variance of a kernel that follows rays and adds up values and their squares."""
+    sums = spread(add, size, samples, 2, threads, tasks(size * samples, TRACED))
     return sums[:, 0] / samples, samples, variance_of_mean(sums[:, 0], sums[:, 1], samples)
+
+
+def tasks(samples: int, worthwhile: int) -> int:
+    """Into how many pieces so many samples of all elements are cut, each of which is `worthwhile` or so."""
+    return min(max(1, samples // worthwhile), TASKS)
 
 
 def spread(add: Callable, size: int, steps: int, columns: int, threads: int, most: int = TASKS) -> np.ndarray:
@@ -65,14 +71,14 @@ def spread(add: Callable, size: int, steps: int, columns: int, threads: int, mos
     if len(tiles) == len(spans) == 1:
         add(0, size, spans[0], sums[0])
         return sums[0]
-    tasks = [(part, tile) for part in range(len(spans)) for tile in tiles]
-    waiting = iter(tasks)
+    pieces = [(part, tile) for part in range(len(spans)) for tile in tiles]
+    waiting = iter(pieces)
 
     def work() -> None:
         for part, (first, last) in waiting:
             add(first, last, spans[part], sums[part, first:last])
 
-    helpers = [workers(threads).submit(work) for _ in range(min(threads, len(tasks)) - 1)]
+    helpers = [workers(threads).submit(work) for _ in range(min(threads, len(pieces)) - 1)]
     work()
     for helper in helpers:
         helper.result()

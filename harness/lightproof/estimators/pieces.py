@@ -10,7 +10,7 @@ import numpy as np
 from lightproof.estimators import crowd, lamps, skies, world
 from lightproof.estimators.aims import Aim
 from lightproof.estimators.blockers import Casters, between, plane_of, standing
-from lightproof.estimators.estimator import TASKS, spread
+from lightproof.estimators.estimator import spread, tasks
 from lightproof.estimators.kernel import estimate
 from lightproof.estimators.lamps import Beam, Glow, Lamp, Point
 from lightproof.estimators.meeting import Cosine, Uniform
@@ -49,8 +49,7 @@ class Piece:
             estimate(self.source, self.blockers, view.receivers[first:last], slopes, first, points, blocks, model, out)
 
         size = len(view.receivers)
-        tasks = min(max(1, size * points.samples // WORTHWHILE), TASKS)
-        sums = spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks).T
+        sums = spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks(size * points.samples, WORTHWHILE)).T
         np.maximum(sums[1], -sums[0], out=sums[1])  # no value is below 0: what would be is rounding
         np.minimum(sums[2], LARGEST, out=sums[2])  # squares beyond float32: their sum is no less
         return sums
