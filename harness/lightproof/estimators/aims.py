@@ -11,7 +11,8 @@ import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators import shapes
-from lightproof.estimators.lamps import Facing, Glow, arriving, faced
+from lightproof.estimators.lamps import Glow, arriving, faced
+from lightproof.estimators.meeting import Ball, Window
 from lightproof.estimators.outlines import Facet, Rim, clockwise
 from lightproof.estimators.shapes import Flat, Sphere
 from lightproof.estimators.vectors import like
@@ -24,7 +25,7 @@ class Aim(NamedTuple):
     """A shape that emits `strength` [W/(m2 sr)] from its front, with the corners of a polygon as the scene has them; where an
     element sees it, `shape` is what the domain has for it. Each domain is a subclass."""
 
-    shape: Flat | Sphere | Facet | Rim | Facing
+    shape: Flat | Sphere | Facet | Rim | Window | Ball
     strength: float
     corners: tuple[Vec3, ...] = ()
 

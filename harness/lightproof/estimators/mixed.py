@@ -14,11 +14,11 @@ from numba.extending import overload
 
 from lightproof.estimators import shapes
 from lightproof.estimators.aims import INLINED, Aim, beheld, counted
-from lightproof.estimators.lamps import Facing, arriving, level_of, parameters
-from lightproof.estimators.meeting import GRAZING, around, meet
+from lightproof.estimators.lamps import Facing, arriving, parameters
+from lightproof.estimators.meeting import Ball, around, light_placed, meet
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import COINCIDES, Sphere, covers, placed
-from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub
+from lightproof.estimators.shapes import COINCIDES
+from lightproof.estimators.vectors import along, cross, dot, norm, sub
 
 
 class Mixed(Aim):
@@ -29,11 +29,11 @@ class Mixed(Aim):
 
 @overload(beheld)
 def _beheld(lamp, origin, frame):
-    return facing if lamp.instance_class is Mixed else None
+    return as_met if lamp.instance_class is Mixed else None
 
 
-def facing(lamp, origin, frame):
-    return Facing(placed(lamp.shape, origin, frame, 1.0), 1.0, level_of(lamp.shape, sub(origin, lamp.shape.center)))
+def as_met(lamp, origin, frame):
+    return light_placed(lamp.shape, origin, frame, 1.0)
 
 
 @overload(counted, jit_options=INLINED)
@@ -59,7 +59,7 @@ def by_area(seen, x, s, t):
 
 @overload(by_area, jit_options=INLINED)
 def _by_area(seen, x, s, t):
-    return sphere_by_area if seen.types[0].instance_class is Sphere else flat_by_area
+    return ball_by_area if seen.instance_class is Ball else flat_by_area
 
 
 def by_cosine(seen, x, w):
@@ -68,7 +68,7 @@ def by_cosine(seen, x, w):
 
 @overload(by_cosine, jit_options=INLINED)
 def _by_cosine(seen, x, w):
-    return sphere_by_cosine if seen.types[0].instance_class is Sphere else flat_by_cosine
+    return ball_by_cosine if seen.instance_class is Ball else flat_by_cosine
 
 
 def flat_by_area(seen, x, s, t):
@@ -79,12 +79,8 @@ def flat_by_area(seen, x, s, t):
 
 
 def flat_by_cosine(seen, x, w):
-    shape = seen.shape
-    height, o = seen.level + dot(x, shape.normal), sub(x, shape.center)
-    approach = -dot(w, shape.normal)
-    d = scaled(height / max(approach, GRAZING), w)
-    met = covers(shape, dot(o, shape.dual_u) + dot(d, shape.dual_u), dot(o, shape.dual_v) + dot(d, shape.dual_v))
-    return of_flat(shape, height, d) if met & (approach > GRAZING) else 0.0, d
+    met, d = meet(seen, x, w)
+    return met * of_flat(seen.shape, seen.level + dot(x, seen.shape.normal), d), d
 
 
 def of_flat(shape, height, d):
@@ -104,16 +100,15 @@ def _of_flat(shape, height, d):
     return evaluate
 
 
-def sphere_by_area(seen, x, s, t):
-    return arriving(seen, x, s, t)
+def ball_by_area(seen, x, s, t):
+    return arriving(Facing(seen.shape, 1.0, seen.level), x, s, t)
 
 
-def sphere_by_cosine(seen, x, w):
+def ball_by_cosine(seen, x, w):
     """By area the cap that faces x is drawn from."""
-    shape = seen.shape
-    met, d = meet(shape, x, w)
-    away = sub(x, shape.center)
+    met, d = meet(seen, x, w)
+    radius, away = seen.shape.radius, sub(x, seen.shape.center)
     r = norm(away)
-    cap = 2 * np.pi * shape.radius * shape.radius * max(r - shape.radius, 0.0) / r
-    inward = -dot(w, along(away, 1.0, d)) / shape.radius
-    return met * cap * w[2] * max(inward, 0.0) / dot(d, d), d
+    gap = max(seen.level + dot(x, sub(away, seen.shape.center)), 0.0) / (r + radius)
+    inward = -dot(w, along(away, 1.0, d)) / radius
+    return met * (2 * np.pi * radius * radius * gap / r) * w[2] * max(inward, 0.0) / dot(d, d), d
