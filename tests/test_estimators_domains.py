@@ -375,6 +375,21 @@ def test_directions_meet_a_light_over_whose_corner_one_is(label):
     assert unbiased(films("mc-mis/lattice", scene, 65536, 64), CATALOGUE.reference(scene).value, 2e-7)
 
 
+@pytest.mark.parametrize("name", [*NEW, "mc-area"])
+def test_float32_adds_up_equal_samples(name):
+    """Half of a lamp 300 m above, so that samples count the same or nothing: half of all points are within 1e-6 of float64. In a
+    few, a sample hits or misses by rounding, which is 6e-5."""
+    lamp = {"id": "lamp", "kind": "area", "radiance": 2.04, "shape": {
+        "type": "polygon", "vertices": [[-0.5, -0.5, 300], [-0.5, 0.5, 300], [0.5, 0.5, 300], [0.5, -0.5, 300]]}}
+    screen = {"id": "screen", "reflectance": 0, "shape": {
+        "type": "polygon", "vertices": [[0.13, -1, 299], [0.13, 1, 299], [3, 1, 299], [3, -1, 299]]}}
+    positions = [[x, y, 0.0] for x in np.linspace(-0.3, 0.3, 8).tolist() for y in (-0.2, -0.1, 0.1, 0.2)]
+    film = {"kind": "points", "quantity": "irradiance", "positions": positions, "normals": [[0, 0, 1]] * len(positions)}
+    table = {"title": "test", "max_bounces": 0, "tolerance": 0.01, "light": [lamp], "surface": [screen], "film": film}
+    single, double = (films(each, from_table(table, "test"), 16384, 2) for each in (name, f"{name}/float64"))
+    assert np.median(abs(single / double - 1)) <= 1e-6
+
+
 def test_degenerate_lights_are_black():
     """hard-degenerate-light: a polygon of no area gives zero, not NaN."""
     scene = case("hard-degenerate-light", "base")

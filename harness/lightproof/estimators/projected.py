@@ -28,9 +28,10 @@ SURE = 1e-7  # of what its rounding is relative to: a smaller projected solid an
 
 
 class Projected(Aim):
-    """An aim at a light's projected solid angle."""
+    """An aim at a light's projected solid angle, all samples of which count the same: `alike`, as `kernel` asks."""
 
     __slots__ = ()
+    alike = True
 
 
 @overload(beheld)
