@@ -216,9 +216,10 @@ class Rung:
 
     def stopped_shrinking(self, before: Rung) -> np.ndarray:
         """Where the error without noise falls no longer, (J + 1 + n,): neither there nor, for sums over grids converge by fits
-        and starts, over the whole film, which has settled."""
-        moved = np.sqrt(((self.errors[0] - before.errors[0]) ** 2).mean())
-        settled = moved < SETTLED * self.rmse
+        and starts, over all of the film that some sample has told of, which has settled."""
+        told = ~(self.blind | self.unlit)[self.scale.tiles + 1:]
+        error, moved = self.errors[0][told], (self.errors[0] - before.errors[0])[told]
+        settled = np.linalg.norm(moved) < SETTLED * np.linalg.norm(error)
         return (np.abs(self.bias) > SHRINKING * np.abs(before.bias)) & settled
 
     def agrees(self, before: Rung) -> bool:
