@@ -22,9 +22,11 @@ from race import Film, Track, failure, race
 from rows import Row
 
 NAME = "growth"
-SHARES = {"mc-area": 1.0, "mc-area/sobol": 1.0, "analytic": 1 / 16, "mitsuba": 1.0}  # of the samples; nodes are worth more
+NODES = "analytic"  # the method whose samples are nodes, each of which takes in every light
+RACERS = ("mc-area", "mc-area/sobol", NODES, "mitsuba")
 SCENE = "square-light"
 FEW_SAMPLES, MORE_SAMPLES = 64, 1024
+PER_NODE = 16  # samples: a node is worth more
 GRID = [16, 12]
 ELEMENTS = ([1, 1], [4, 3], [16, 12], [64, 48], [256, 192], [1000, 1000])
 SAMPLES = tuple(4**power for power in range(3, 12))
@@ -39,17 +41,19 @@ Add = Callable[[Iterable[Row]], None]
 
 @dataclass(frozen=True)
 class Point:
-    """Where a curve is measured: what is varied, how much of it there is, and the scene and samples per element for it."""
+    """Where a curve is measured: what is varied, how much of it there is, and the scene for it, with samples and nodes per
+    element."""
 
     parameter: str
     amount: int
     scene: Scene
     samples: int
+    nodes: int
 
 
 def measure(track: Track, add: Add, rounds: int, quick: bool, tracks: dict[int, Track]) -> None:
     """Curve by curve; `tracks` has one for each number of threads."""
-    entries = track.there(METHODS[name] for name in SHARES)
+    entries = track.there(METHODS[name] for name in RACERS)
     with ExitStack() as stack:
         fresh = {count: stack.enter_context(other.fresh()) for count, other in tracks.items()}
         for points in (samples(), elements(), lights(), blockers()):
@@ -62,14 +66,14 @@ def curve(track: Track, points: list[Point], entries: list[Entry], add: Add, rou
     running = list(entries)
     for point, following in zip(points, [*points[1:], points[-1]], strict=True):
         track.tell(f"{NAME}: {point.parameter} {point.amount:,}")
-        films = [Film(entry, point.scene, max(1, round(SHARES[entry.name] * point.samples))) for entry in running]
+        films = [Film(entry, point.scene, point.nodes if entry.name == NODES else point.samples) for entry in running]
         firsts = {film: track.render(film, 0) for film in films}
         add(failure(NAME, result) for result in firsts.values() if result.status is not Status.OK)
         taken: dict[Film, list[Result]] = {film: [] for film, result in firsts.items() if result.status is Status.OK}
         try:
             track.race(taken, rounds)
         finally:
-            add(row for film, results in taken.items() for row in rows(point, film, results))
+            add(row for film, results in taken.items() for row in rows(point.parameter, point.amount, film, results))
         longest = LONGEST * track.seconds * point.amount / following.amount
         running = [film.entry for film, results in taken.items() if results and results[-1].seconds["render"] < longest]
 
@@ -89,12 +93,12 @@ def threads(tracks: dict[int, Track], entries: list[Entry], add: Add, rounds: in
         race(taken, rounds)
     finally:
         for (track, film), results in taken.items():
-            add(rows(Point("threads", track.threads, film.scene, film.samples), film, results))
+            add(rows("threads", track.threads, film, results))
 
 
-def rows(point: Point, film: Film, results: list[Result]) -> list[Row]:
+def rows(parameter: str, amount: int, film: Film, results: list[Result]) -> list[Row]:
     """Render time, the worker's largest memory, and what it took to set the scene up."""
-    about = (NAME, point.scene.name, film.entry.name, point.parameter, point.amount)
+    about = (NAME, film.scene.name, film.entry.name, parameter, amount)
     return [Row(*about, "render", "s", tuple(result.seconds["render"] for result in results)),
             Row(*about, "memory", "MB", tuple(result.peak_memory_mb for result in results)),
             Row(*about, "setup", "s", tuple(result.seconds["setup"] for result in results[:1]))]
@@ -102,16 +106,16 @@ def rows(point: Point, film: Film, results: list[Result]) -> list[Row]:
 
 def elements() -> Iterator[Point]:
     for resolution in ELEMENTS:
-        yield Point("elements", int(np.prod(resolution)), gridded(resolution), FEW_SAMPLES)
+        yield Point("elements", int(np.prod(resolution)), gridded(resolution), FEW_SAMPLES, FEW_SAMPLES // PER_NODE)
 
 
 def samples() -> Iterator[Point]:
     for number in SAMPLES:
-        yield Point("samples", number, gridded(GRID), number)
+        yield Point("samples", number, gridded(GRID), number, number // PER_NODE)
 
 
 def lights() -> Iterator[Point]:
-    """The lamp cut into so many small ones; samples per element are those of one lamp times their number."""
+    """The lamp cut into so many small ones; samples per element are those of one lamp times their number, which share them."""
     for number in COUNTS:
         table = base()
         lamp = table["light"].pop()
@@ -119,7 +123,7 @@ def lights() -> Iterator[Point]:
         for place, square in enumerate(squares(corners, number)):
             shape = {"type": "polygon", "vertices": square}
             table["light"].append({"id": f"lamp-{place}", "kind": "area", "radiance": lamp["radiance"], "shape": shape})
-        yield Point("lights", number, scene_file.from_table(table, "many-lights"), FEW_SAMPLES * number)
+        yield Point("lights", number, scene_file.from_table(table, "many-lights"), FEW_SAMPLES * number, FEW_SAMPLES // PER_NODE)
 
 
 def blockers() -> Iterator[Point]:
@@ -129,7 +133,7 @@ def blockers() -> Iterator[Point]:
         table = base()
         table["surface"] = [{"id": f"blocker-{place}", "reflectance": 0.0, "shape": {"type": "polygon", "vertices": square}}
                             for place, square in enumerate(squares(level, number))]
-        yield Point("blockers", number, scene_file.from_table(table, "many-blockers"), MORE_SAMPLES)
+        yield Point("blockers", number, scene_file.from_table(table, "many-blockers"), MORE_SAMPLES, MORE_SAMPLES // PER_NODE)
 
 
 def squares(corners: np.ndarray, number: int) -> list[list[list[float]]]:

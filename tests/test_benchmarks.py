@@ -212,6 +212,13 @@ def test_rows_come_back_from_the_csv(tmp_path):
     assert (rows[0].median, rows[0].interval) == (2, (1, 3))
 
 
+def test_lights_share_samples_and_not_nodes():
+    """64 samples for each light; a node takes in every light."""
+    points = list(growth.lights())
+    assert {point.samples / point.amount for point in points} == {64}
+    assert len({point.nodes for point in points}) == 1
+
+
 @pytest.mark.parametrize("points", [growth.lights, growth.blockers])
 def test_grown_scenes_hold_what_they_say(points):
     """So many lights or blockers, none on top of another: centres are farther apart than sides are long."""
