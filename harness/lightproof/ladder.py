@@ -216,9 +216,9 @@ class Rung:
 
     def stopped_shrinking(self, before: Rung) -> np.ndarray:
         """Where the error without noise falls no longer, (J + 1 + n,): neither there nor, for sums over grids converge by fits
-        and starts, over all of the film that some sample has told of, which has settled."""
-        told = ~(self.blind | self.unlit)[self.scale.tiles + 1:]
-        error, moved = self.errors[0][told], (self.errors[0] - before.errors[0])[told]
+        and starts, over all of the film that some sample has met, which has settled."""
+        met = ~self.unlit[self.scale.tiles + 1:]
+        error, moved = self.errors[0][met], (self.errors[0] - before.errors[0])[met]
         settled = np.linalg.norm(moved) < SETTLED * np.linalg.norm(error)
         return (np.abs(self.bias) > SHRINKING * np.abs(before.bias)) & settled
 
