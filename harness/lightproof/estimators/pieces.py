@@ -51,7 +51,7 @@ class Piece:
         size = len(view.receivers)
         sums = spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks(size * points.samples, WORTHWHILE)).T
         np.maximum(sums[1], -sums[0], out=sums[1])  # no value is below 0: what would be is rounding
-        np.minimum(sums[2], LARGEST, out=sums[2])  # squares beyond float32: their sum is no less
+        sums[2, np.isinf(sums[2])] = LARGEST  # squares beyond float32: their sum is no less
         return sums
 
 
