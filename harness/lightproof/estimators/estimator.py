@@ -18,7 +18,7 @@ from lightproof.method import Method
 from lightproof.scene import Scene
 
 TASKS = 64  # pieces of work for one film, at most: fixed, so that the number of threads changes nothing
-TRACED = 2**9  # samples that follow rays: a task of them takes longer than to hand it to a thread
+TRACED = 2**12  # samples that follow rays: a task of them takes longer than to hand it to a thread
 
 
 class Estimator(Method):

@@ -7,7 +7,7 @@ from abc import abstractmethod
 import numpy as np
 
 from lightproof.estimators.composed import Composed
-from lightproof.estimators.estimator import spread
+from lightproof.estimators.estimator import TRACED, spread, tasks
 from lightproof.estimators.peaks import largest
 from lightproof.estimators.points import Grid
 from lightproof.method import Rendering
@@ -40,5 +40,6 @@ class Riemann(Composed):
 
     def traced(self, samples: int, seed: int) -> Rendering:
         cut = self.grid(samples)
-        sums = spread(lambda first, last, span, out: self.trace(cut, first, last, out), self.size, 1, 1, self.threads)
+        most = tasks(self.size * cut.samples, TRACED)
+        sums = spread(lambda first, last, span, out: self.trace(cut, first, last, out), self.size, 1, 1, self.threads, most)
         return Rendering(sums[:, 0] / cut.side**2, cut.samples)
