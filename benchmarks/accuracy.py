@@ -1,4 +1,4 @@
-"""Time to a given error: every in-house method and every renderer at its best configuration, on the same scenes.
+"""Time to a given error: every in-house method and every renderer at its best configurations, on the same scenes.
 
 Each climbs a ladder of samples until its error is small enough or the next film would take too long; then all films of all
 ladders are rendered in turn, once a round, with a seed of their own each time. Errors are fractions of the tolerance scale,
@@ -52,7 +52,7 @@ def is_asked(scene: Scene, everything: bool) -> bool:
 
 
 def race(track: Track, scene: Scene, scale: Scale, own: Sequence[Entry], add: Add, rounds: int) -> None:
-    """Every method's ladder, `own` and the best of each renderer's, then all their films in turn."""
+    """Every method's ladder, `own` and those of each renderer that are best for an error, then all their films in turn."""
     short, long = OURS_SHARE * track.seconds, track.seconds
     climbs = [climb(track, scene, scale, entry, Limit(short, short)) for entry in track.there(own)]
     climbs += [climb(track, scene, scale, entry, Limit(long, STRETCH * long)) for entry in best(track, scene, scale, add)]

@@ -185,7 +185,7 @@ SECTIONS: dict[str, tuple[str, Callable[[Sequence[Row]], list[Part]]]] = {
         " ≤: the first step of the ladder, which took more than one sample, was better than that; ≈: extrapolated by the slope"
         " of the last steps; never: the error has stopped falling. Set-up and compilation come once, before the first film; of"
         " a kernel found on disk the latter is what it takes to load.", accuracy),
-    "choice": ("Configurations of renderers, tried on every scene; the best took part.", choice),
+    "choice": ("Configurations of renderers, tried on every scene; the best for each error took part.", choice),
     "hardware": (
         "The multiply-add peak is measured on the same threads in the same rounds; a multiply-add counts as two operations.",
         hardware),
