@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
 import numba
 import numpy as np
+import pytest
+from numba import njit
 from numba.core.codegen import get_host_cpu_features
+from test_estimators import method
 
-from lightproof.estimators import compiled
+from lightproof import suite
+from lightproof.estimators import compiled, pieces
 
 PROGRAM = """
 from numba.core import event
@@ -65,6 +71,20 @@ def test_the_widest_registers_are_used():
     total(np.ones(100, np.float32))
     assembly = next(iter(total.inspect_asm().values()))
     assert ("zmm" in assembly) == ("+avx512f" in get_host_cpu_features().split(","))
+
+
+@pytest.mark.parametrize(("name", "scene"), [
+    *product(("mc-area", "mc-area/jitter", "mc-cosine/jitter", "mc-hemisphere/jitter", "riemann-area", "riemann-hemisphere"),
+             ("sphere-light",)),
+    *product(("mc-area/sobol", "mc-cosine/lattice", "mc-solid-angle", "mc-mis/jitter"), ("occluded-square",)),
+])  # fmt: skip
+def test_kernels_run_in_vector_registers(name, scene, monkeypatch):
+    """Partial sums side by side, which a call in the loop prevents."""
+    kernel = njit(nogil=True, fastmath=compiled.FAST, error_model="numpy")(pieces.estimate.py_func)
+    monkeypatch.setattr(pieces, "estimate", kernel)
+    method(name, suite.default().scene(scene))
+    code = next(iter(kernel.inspect_llvm().values()))
+    assert re.search(r"= phi .*<(4|8|16) x float>", code)
 
 
 def test_folder_respects_the_user_s_cache(tmp_path, monkeypatch):

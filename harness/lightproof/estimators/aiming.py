@@ -9,7 +9,7 @@ import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators.batch import LIGHT, NORMAL, PLACE, REACH, TOTAL, WAY, WEIGHT, at, put
-from lightproof.estimators.compiled import inlined, strict
+from lightproof.estimators.compiled import INLINED, inlined, strict
 from lightproof.estimators.lamps import parameters
 from lightproof.estimators.rng import TICK, block_keys, draws
 from lightproof.estimators.shapes import Cap, Sphere
@@ -134,7 +134,7 @@ def spot(shape, area, x, s, t):
     cap that faces x is drawn from."""
 
 
-@overload(spot, jit_options={"forceinline": True})
+@overload(spot, jit_options=INLINED)
 def _spot(shape, area, x, s, t):
     return {Sphere: _spot_on_sphere, Cap: _spot_on_cap}.get(shape.instance_class, _spot_on_flat)
 

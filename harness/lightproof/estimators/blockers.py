@@ -11,14 +11,13 @@ from numba import types
 from numba.extending import overload
 
 from lightproof import geometry
-from lightproof.estimators.compiled import fast
+from lightproof.estimators.compiled import INLINED, fast
 from lightproof.estimators.extents import reaching
 from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, placed
 from lightproof.estimators.vectors import dot, like, sub
 from lightproof.estimators.world import WIDTH, Item, item_row
 from lightproof.scene import Scene
 
-INLINED = {"forceinline": True}  # fresh from the compiler, three balls took ten times as long as from the cache
 INSIDE = 0.9999  # of a sphere's radius squared: what is nearer to its centre lies inside, and not on it by rounding
 
 

@@ -29,6 +29,8 @@ strict = njit(fastmath=STRICT, error_model="numpy")
 inlined = njit(fastmath=STRICT, error_model="numpy", forceinline=True)  # strict, and part of the loop that calls it
 fast = njit(fastmath=FAST, error_model="numpy")
 
+INLINED = {"forceinline": True}  # of an overload: where the compiler sees fit to call it, a loop leaves the vector registers
+
 
 def digest(folder: Path) -> str:
     """SHA-256 of every Python source in `folder` (names and bytes) and of the versions that compile them and their constants."""

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from numba.extending import overload
 
-from lightproof.estimators.compiled import inlined
+from lightproof.estimators.compiled import INLINED, inlined
 from lightproof.estimators.fans import reach, towards
 from lightproof.estimators.outlines import Rim
 from lightproof.estimators.rng import TICK
@@ -77,7 +77,7 @@ def over_disk(normal, height, offset, radius, beyond, aside):
     return Cone(cross(e2, axis), e2, axis, sines, (height / math.sqrt(wide), math.sqrt(up / narrow)))
 
 
-@overload(towards, jit_options={"forceinline": True})
+@overload(towards, jit_options=INLINED)
 def _towards(shape, x, s, t):
     return {Rim: towards_rim, Sphere: towards_sphere}.get(shape.instance_class)
 

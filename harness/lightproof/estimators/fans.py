@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from numba.extending import overload
 
-from lightproof.estimators.compiled import inlined
+from lightproof.estimators.compiled import INLINED, inlined
 from lightproof.estimators.outlines import Edge, Facet, about
 from lightproof.estimators.shapes import COINCIDES
 from lightproof.estimators.trigonometry import half_turn, series
@@ -118,7 +118,7 @@ def towards(shape, x, s, t):
     of its front), the direction, and the distance along it."""
 
 
-@overload(towards, jit_options={"forceinline": True})
+@overload(towards, jit_options=INLINED)
 def _towards(shape, x, s, t):
     return towards_facet if shape.instance_class is Facet else None
 

@@ -1,7 +1,7 @@
 """The one kernel of direct light: sums of an integrand over a film's elements, compiled for what the scene needs.
 
-It is composed of a source (`lamps`: points of a light; `directions`: what a direction meets), the blockers between (none: no
-visibility test), the points (random or a grid) and the precision.
+It is composed of a source (`lamps`: points of a light; `meeting`: directions that may meet it; `aims`: directions into it), the
+blockers between (none: no visibility test), the points (random, jittered, of a lattice, Sobol's or a grid) and the precision.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def _sum_block(source, blockers, cell, block, count, pivot):
 
 
 def sum_fused(source, blockers, cell, block, count, pivot):
-    """Few blockers: all in one loop, which runs in vector registers."""
+    """Few blockers: all in one loop, which runs in vector registers but for what solves each direction by steps."""
     zero = like(pivot, 0)
     total, square = nought(source, pivot), nought(source, pivot)
     for i in range(count):

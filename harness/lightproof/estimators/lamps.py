@@ -16,7 +16,7 @@ from numba.extending import overload
 from lightproof import geometry
 from lightproof import scene as scenes
 from lightproof.estimators import shapes
-from lightproof.estimators.compiled import strict
+from lightproof.estimators.compiled import INLINED, strict
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import COINCIDES, Disk, Flat, Parallelogram, Sphere, Triangle, placed
 from lightproof.estimators.trigonometry import turn
@@ -169,7 +169,7 @@ def arriving(lamp, x, s, t):
     """Estimate of irradiance per strength at `x` without blockers, and the vector to the light's point; see the module."""
 
 
-@overload(arriving)
+@overload(arriving, jit_options=INLINED)
 def _arriving(lamp, x, s, t):
     if lamp.instance_class is Facing:
         return _arriving_sphere if lamp.types[0].instance_class is Sphere else _arriving_flat

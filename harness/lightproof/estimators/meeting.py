@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from lightproof.estimators.compiled import fast
+from lightproof.estimators.compiled import INLINED, fast
 from lightproof.estimators.lamps import arriving, faced, level_of
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, placed
@@ -120,7 +120,7 @@ def _within(shape, margins, a, b):
     }[shape.instance_class]
 
 
-@overload(arriving)
+@overload(arriving, jit_options=INLINED)
 def _arriving(lamp, x, s, t):
     return {Uniform: _arriving_uniform, Cosine: _arriving_cosine}.get(lamp.instance_class)
 
@@ -152,9 +152,9 @@ def meet(light, x, w):
     """Radiance per strength that x sees of the light in direction w, a unit vector, and the vector to the point met."""
 
 
-@overload(meet)
+@overload(meet, jit_options=INLINED)
 def _meet(light, x, w):
-    return {Sphere: _meet_sphere, Ball: _meet_ball, Dome: _meet_dome, Window: _meet_window}[light.instance_class]
+    return {Ball: _meet_ball, Dome: _meet_dome, Window: _meet_window}[light.instance_class]
 
 
 def _meet_window(light, x, w):
@@ -164,10 +164,6 @@ def _meet_window(light, x, w):
     a, b = dot(x, shape.dual_u) + dot(d, shape.dual_u), dot(x, shape.dual_v) + dot(d, shape.dual_v)
     facing = (above > like(above, 0)) & (approach > like(above, GRAZING))
     return like(above, 1) if facing & within(shape, light.margins, a, b) else like(above, 0), d
-
-
-def _meet_sphere(light, x, w):
-    return met(light, level_of(light, sub(x, light.center)), x, w)
 
 
 def _meet_ball(light, x, w):

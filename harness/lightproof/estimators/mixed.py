@@ -13,7 +13,8 @@ import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators import shapes
-from lightproof.estimators.aims import INLINED, Aim, beheld, counted
+from lightproof.estimators.aims import Aim, beheld, counted
+from lightproof.estimators.compiled import INLINED
 from lightproof.estimators.lamps import Facing, arriving, parameters
 from lightproof.estimators.meeting import Ball, around, light_placed, meet
 from lightproof.estimators.rng import TICK

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from lightproof.estimators.blockers import INLINED, Plane, hidden
+from lightproof.estimators.blockers import Plane, hidden
+from lightproof.estimators.compiled import INLINED
 from lightproof.estimators.lamps import Lamp, arriving, drawable, faced, parameters
 from lightproof.estimators.shapes import Flat, Sphere, covers, placed
 from lightproof.estimators.vectors import like, product
@@ -61,7 +62,7 @@ def face(lamp, origin, frame, model):
     return Level(drawable(placed(lamp.shape, origin, frame, model)), like(model, lamp.strength))
 
 
-@overload(arriving)
+@overload(arriving, jit_options=INLINED)
 def _arriving(lamp, x, s, t):
     return arriving_level if lamp.instance_class is Level else None
 

@@ -13,9 +13,9 @@ import math
 
 from numba.extending import overload
 
-from lightproof.estimators.aims import INLINED, Aim, beheld, counted
+from lightproof.estimators.aims import Aim, beheld, counted
 from lightproof.estimators.azimuths import inside, sectors, summed
-from lightproof.estimators.compiled import inlined, strict
+from lightproof.estimators.compiled import INLINED, inlined, strict
 from lightproof.estimators.cones import entry, over_sphere, towards
 from lightproof.estimators.fans import reach
 from lightproof.estimators.outlines import Facet, Rim, about, outlined

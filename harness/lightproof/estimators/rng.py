@@ -15,7 +15,7 @@ import numpy as np
 from lightproof.estimators.compiled import fast, strict
 from lightproof.estimators.vectors import like
 
-BLOCK = 2048  # points between two draws of the lattice's shift, summed in the kernel's precision; blocks add in float64
+BLOCK = 2048  # points between two draws of the lattice's shift; blocks add in float64
 TABLE = (np.random.PCG64(BLOCK).random_raw(BLOCK) >> np.uint64(32)).astype(np.uint32)
 A1 = np.uint32(32310901)
 A2 = np.uint32(32310901**2 % 2**32)

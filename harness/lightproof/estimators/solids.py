@@ -12,7 +12,7 @@ import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators.batch import BEND, FACE, GLOW, LIGHT, PLACE, REACH, REFLECTED, SIZE, WAY, at, put
-from lightproof.estimators.compiled import inlined, strict
+from lightproof.estimators.compiled import INLINED, inlined, strict
 from lightproof.estimators.shapes import Cap, Disk, Parallelogram, Sphere, Triangle, covers
 from lightproof.estimators.tracing import vector
 from lightproof.estimators.vectors import along, dot, scaled, sub
@@ -98,7 +98,7 @@ def met(shape, x, w, near):
     """Distance beyond `near` at which a ray along w, a unit vector, meets the shape; FAR where it does not."""
 
 
-@overload(met, jit_options={"forceinline": True})
+@overload(met, jit_options=INLINED)
 def _met(shape, x, w, near):
     return {Sphere: _met_sphere, Cap: _met_cap}.get(shape.instance_class, _met_flat)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators.batch import LIGHT, NORMAL, PLACE, REACH, TOTAL, WAY, WEIGHT, put
-from lightproof.estimators.compiled import fast, inlined, strict
+from lightproof.estimators.compiled import INLINED, fast, inlined, strict
 from lightproof.estimators.points import Random, drawn, opened
 from lightproof.estimators.rng import BLOCK, TICK, draws
 from lightproof.estimators.tracing import vector
@@ -147,7 +147,7 @@ def start(film, state, i, element, p, q):
     """Place and normal of a receiver, or origin and direction of a camera's ray."""
 
 
-@overload(start, jit_options={"forceinline": True})
+@overload(start, jit_options=INLINED)
 def _start(film, state, i, element, p, q):
     return {Receivers: _receive, Within: _receive, Pinhole: _look_out, Parallel: _look_along}[film.instance_class]
 

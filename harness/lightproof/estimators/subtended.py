@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from numba.extending import overload
 
-from lightproof.estimators.aims import INLINED, Aim, beheld, counted
+from lightproof.estimators.aims import Aim, beheld, counted
+from lightproof.estimators.compiled import INLINED
 from lightproof.estimators.cones import towards
 from lightproof.estimators.outlines import outlined
 from lightproof.estimators.rng import TICK
