@@ -1,4 +1,4 @@
-"""The cache of compiled kernels: where it is, that it notices every edit, and that a second process finds it."""
+"""Compiled kernels: that they take vector registers; where their cache is, that it notices every edit and is found again."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from numba.extending import overload
 from lightproof import geometry
 from lightproof import scene as scenes
 from lightproof.estimators import shapes
-from lightproof.estimators.compiled import INLINED, strict
+from lightproof.estimators.compiled import INLINED, inlined, strict
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import COINCIDES, Disk, Flat, Parallelogram, Sphere, Triangle, placed
 from lightproof.estimators.trigonometry import turn
@@ -140,6 +140,13 @@ def beyond(radius, w):
     return (most - radius) * (most + radius) + middle * middle + least * least
 
 
+@inlined
+def level_from(ball, x):
+    """The `level` of a sphere from x instead of the element's origin."""
+    center = ball.shape.center
+    return ball.level + dot(x, sub(sub(x, center), center))
+
+
 def drawable(shape):
     """The shape as `parameters` are drawn for it the cheapest."""
 
@@ -190,7 +197,7 @@ def _arriving_sphere(lamp, x, s, t):
     w, radius = sub(x, lamp.shape.center), lamp.shape.radius
     r = math.sqrt(dot(w, w))
     zero, one = like(r, 0), like(r, 1)
-    gap = max(lamp.level + dot(x, sub(w, lamp.shape.center)), zero) / (r + radius)
+    gap = max(level_from(lamp, x), zero) / (r + radius)
     u = s * like(s, TICK) + like(s, 0.5)
     inverse = one / r
     height = gap * inverse

@@ -13,7 +13,7 @@ import numpy as np
 from numba.extending import overload
 
 from lightproof.estimators.compiled import INLINED, fast
-from lightproof.estimators.lamps import arriving, faced, level_of
+from lightproof.estimators.lamps import arriving, faced, level_from, level_of
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, placed
 from lightproof.estimators.skies import Dome, placed_dome, sky_radiances
@@ -167,8 +167,7 @@ def _meet_window(light, x, w):
 
 
 def _meet_ball(light, x, w):
-    c = light.shape.center
-    return met(light.shape, light.level + dot(x, sub(sub(x, c), c)), x, w)
+    return met(light.shape, level_from(light, x), x, w)
 
 
 @fast

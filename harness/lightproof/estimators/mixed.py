@@ -15,7 +15,7 @@ from numba.extending import overload
 from lightproof.estimators import shapes
 from lightproof.estimators.aims import Aim, beheld, counted
 from lightproof.estimators.compiled import INLINED
-from lightproof.estimators.lamps import Facing, arriving, parameters
+from lightproof.estimators.lamps import Facing, arriving, level_from, parameters
 from lightproof.estimators.meeting import Ball, around, light_placed, meet
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import COINCIDES
@@ -110,6 +110,6 @@ def ball_by_cosine(seen, x, w):
     met, d = meet(seen, x, w)
     radius, away = seen.shape.radius, sub(x, seen.shape.center)
     r = norm(away)
-    gap = max(seen.level + dot(x, sub(away, seen.shape.center)), 0.0) / (r + radius)
+    gap = max(level_from(seen, x), 0.0) / (r + radius)
     inward = -dot(w, along(away, 1.0, d)) / radius
     return met * (2 * np.pi * radius * radius * gap / r) * w[2] * max(inward, 0.0) / dot(d, d), d
