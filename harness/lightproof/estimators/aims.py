@@ -13,10 +13,11 @@ from numba.extending import overload
 from lightproof.estimators import shapes
 from lightproof.estimators.compiled import INLINED
 from lightproof.estimators.lamps import Glow, arriving, faced
-from lightproof.estimators.meeting import Ball, Window
+from lightproof.estimators.meeting import Ball
 from lightproof.estimators.outlines import Facet, Rim, clockwise
 from lightproof.estimators.shapes import Flat, Sphere
 from lightproof.estimators.vectors import like
+from lightproof.estimators.windows import Window
 from lightproof.geometry import Vec3
 
 

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
 from numba.extending import overload
 
 from lightproof import geometry
-from lightproof.estimators.compiled import INLINED, fast
+from lightproof.estimators.compiled import INLINED
 from lightproof.estimators.extents import reaching
 from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, placed
 from lightproof.estimators.vectors import dot, like, sub
+from lightproof.estimators.windows import Window, window
 from lightproof.estimators.world import WIDTH, Item, item_row
 from lightproof.scene import Scene
 
@@ -79,38 +78,42 @@ def hidden(blocker, x, d):
 
 @overload(hidden, jit_options=INLINED)
 def _hidden(blocker, x, d):
-    if blocker.instance_class is Sphere:
-        return _behind_sphere
-    behind = {Parallelogram: _behind_parallelogram, Triangle: _behind_triangle, Disk: _behind_disk}
-    return behind.get(blocker.instance_class)
+    return {Sphere: _behind_sphere, Window: _behind_window}.get(blocker.instance_class)
 
 
-@fast
-def crossing(blocker, x, d):
-    """Where the segment's line meets the blocker's plane, without a division: whether within the segment, and parameters
-    s, t of the point, both times `scale` >= 0."""
-    above, slope = dot(x, blocker.normal) - dot(blocker.center, blocker.normal), dot(d, blocker.normal)
-    s = (dot(x, blocker.dual_u) - dot(blocker.center, blocker.dual_u)) * slope - above * dot(d, blocker.dual_u)
-    t = (dot(x, blocker.dual_v) - dot(blocker.center, blocker.dual_v)) * slope - above * dot(d, blocker.dual_v)
-    return above * (above + slope) < like(slope, 0), s, t, slope
+def _behind_window(blocker, x, d):
+    """Without a division: parameters of where the segment's line meets the plane, from below the element's middle, times the
+    slope of the segment."""
+    shape = blocker.shape
+    above, slope = dot(x, shape.normal) + blocker.level, dot(d, shape.normal)
+    s = dot(x, shape.dual_u) * slope - above * dot(d, shape.dual_u)
+    t = dot(x, shape.dual_v) * slope - above * dot(d, shape.dual_v)
+    return (above * (above + slope) < like(slope, 0)) & within_times(shape, blocker.margins, s, t, slope)
 
 
-def _behind_parallelogram(blocker, x, d):
-    within, s, t, scale = crossing(blocker, x, d)
-    half = like(scale, 0.5) * abs(scale)
-    return within & (abs(s) <= half) & (abs(t) <= half)
+def within_times(shape, margins, s, t, scale):
+    """`windows.within` of a step that is s, t over `scale`."""
 
 
-def _behind_triangle(blocker, x, d):
-    within, s, t, scale = crossing(blocker, x, d)
-    sign = math.copysign(like(scale, 1), scale)
+@overload(within_times, jit_options=INLINED)
+def _within_times(shape, margins, s, t, scale):
+    return {Parallelogram: _within_parallelogram, Triangle: _within_triangle, Disk: _within_disk}[shape.instance_class]
+
+
+def _within_parallelogram(shape, margins, s, t, scale):
     zero = like(scale, 0)
-    return within & (s * sign >= zero) & (t * sign >= zero) & ((s + t) * sign <= abs(scale))
+    along_u = (s + margins[0] * scale) * (margins[1] * scale - s) >= zero
+    return along_u & ((t + margins[2] * scale) * (margins[3] * scale - t) >= zero)
 
 
-def _behind_disk(blocker, x, d):
-    within, s, t, scale = crossing(blocker, x, d)
-    return within & (s * s + t * t <= scale * scale)
+def _within_triangle(shape, margins, s, t, scale):
+    zero = like(scale, 0)
+    beyond_sides = ((s + margins[0] * scale) * scale >= zero) & ((t + margins[1] * scale) * scale >= zero)
+    return beyond_sides & ((margins[2] * scale - s - t) * scale >= zero)
+
+
+def _within_disk(shape, margins, s, t, scale):
+    return s * (s + margins[0] * scale) + t * (t + margins[1] * scale) <= margins[2] * scale * scale
 
 
 def _behind_sphere(blocker, x, d):
@@ -122,17 +125,28 @@ def _behind_sphere(blocker, x, d):
     return through | (o2 < inner) | (o2 - b - b + d2 < inner)
 
 
-def all_placed(blockers, origin, frame, model):
-    """A tuple of blockers as seen from `origin` along the axes of `frame`."""
+def faced_by(blocker, origin, frame, model):
+    """The blocker as seen from `origin` along the axes of `frame`, in the precision of `model`."""
 
 
-@overload(all_placed)
-def _all_placed(blockers, origin, frame, model):
-    if not isinstance(blockers, types.BaseTuple):
+@overload(faced_by)
+def _faced_by(blocker, origin, frame, model):
+    if issubclass(blocker.instance_class, Flat):
+        return lambda blocker, origin, frame, model: window(blocker, origin, frame, model)
+    return lambda blocker, origin, frame, model: placed(blocker, origin, frame, model)
+
+
+def all_faced(blockers, origin, frame, model):
+    """Blockers as seen from `origin` along the axes of `frame`."""
+
+
+@overload(all_faced)
+def _all_faced(blockers, origin, frame, model):
+    if getattr(blockers, "instance_class", tuple) is not tuple:
         return None
     if len(blockers) == 0:
         return lambda blockers, origin, frame, model: ()
     return lambda blockers, origin, frame, model: (
-        placed(blockers[0], origin, frame, model),
-        *all_placed(blockers[1:], origin, frame, model),
+        faced_by(blockers[0], origin, frame, model),
+        *all_faced(blockers[1:], origin, frame, model),
     )

@@ -10,9 +10,9 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from lightproof.estimators.blockers import all_placed, visible
+from lightproof.estimators.blockers import all_faced, visible
 from lightproof.estimators.compiled import fast, fast_kernel
-from lightproof.estimators.crowd import shadow_all
+from lightproof.estimators.crowd import Faced, shadow_all
 from lightproof.estimators.lamps import arriving, faced
 from lightproof.estimators.points import BLOCK, drawn, opened
 from lightproof.estimators.rng import TICK
@@ -63,7 +63,7 @@ def sum_block(source, blockers, cell, block, count, pivot):
 
 @overload(sum_block)
 def _sum_block(source, blockers, cell, block, count, pivot):
-    return sum_staged if isinstance(blockers, types.Array) else sum_fused
+    return sum_staged if getattr(blockers, "instance_class", None) is Faced else sum_fused
 
 
 def sum_fused(source, blockers, cell, block, count, pivot):
@@ -100,7 +100,7 @@ def sum_staged(source, blockers, cell, block, count, pivot):
         f[i], to = arriving(source, at, s, t)
         x[0, i], x[1, i] = at[0], at[1]
         d[0, i], d[1, i], d[2, i] = to
-    shadow_all(blockers, x, d, f)
+    shadow_all(blockers.groups, blockers.rows, x, d, f)
     total, square = like(pivot, 0), like(pivot, 0)
     for i in range(count):
         total += f[i] - pivot
@@ -130,7 +130,7 @@ def estimate(source, blockers, receivers, slopes, first, points, blocks, model, 
         row = receivers[e]
         origin = row[0], row[1], row[2]
         frame = (row[3], row[4], row[5]), (row[6], row[7], row[8]), (row[9], row[10], row[11])
-        seen, between = faced(source, origin, frame, model), all_placed(blockers, origin, frame, model)
+        seen, between = faced(source, origin, frame, model), all_faced(blockers, origin, frame, model)
         cell = cell_of(receivers, slopes, e, model)
         pivot, total, square = sum_blocks(seen, between, cell, points, first + e, blocks, model)
         out[e, 0], out[e, 1], out[e, 2] = source.strength * taken * pivot, source.strength * total, source.strength**2 * square

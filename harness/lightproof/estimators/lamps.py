@@ -18,9 +18,10 @@ from lightproof import scene as scenes
 from lightproof.estimators import shapes
 from lightproof.estimators.compiled import INLINED, inlined, strict
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import COINCIDES, Disk, Flat, Parallelogram, Sphere, Triangle, placed
+from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, placed
 from lightproof.estimators.trigonometry import turn
-from lightproof.estimators.vectors import along, dot, like, norm, product, scaled, sub, tangents, turned
+from lightproof.estimators.vectors import along, dot, like, product, scaled, sub, tangents, turned
+from lightproof.estimators.windows import height
 from lightproof.geometry import Vec3
 
 LEAST = 1e-37  # square of a length [m2]: what is left of smaller ones in float32 is no number
@@ -122,13 +123,9 @@ def level_of(shape, w):
 
 @overload(level_of)
 def _level_of(shape, w):
-    return (lambda shape, w: beyond(shape.radius, w)) if shape.instance_class is Sphere else height
-
-
-def height(shape, w):
-    """Over the plane of a flat shape; none where it may be rounding."""
-    found = dot(w, shape.normal)
-    return found if abs(found) > COINCIDES * (norm(w) + norm(shape.u) + norm(shape.v)) else 0.0
+    if shape.instance_class is Sphere:
+        return lambda shape, w: beyond(shape.radius, w)
+    return lambda shape, w: height(shape, w)
 
 
 @strict

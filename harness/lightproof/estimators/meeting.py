@@ -15,22 +15,13 @@ from numba.extending import overload
 from lightproof.estimators.compiled import INLINED, fast
 from lightproof.estimators.lamps import arriving, faced, level_from, level_of
 from lightproof.estimators.rng import TICK
-from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, placed
+from lightproof.estimators.shapes import Flat, Sphere, placed
 from lightproof.estimators.skies import Dome, placed_dome, sky_radiances
 from lightproof.estimators.trigonometry import turn
 from lightproof.estimators.vectors import dot, like, scaled, sub
+from lightproof.estimators.windows import Window, window, within
 
 GRAZING = 1e-12  # cosines below count as none: a ray along a plane does not meet it
-
-
-class Window(NamedTuple):
-    """A flat light as directions meet it from an element. `level` [m] is the height of the element's middle over the light's
-    plane and `margins` lead, in the light's parameters, from the point below the middle to the light's edges: what float32
-    would lose of a light that is near."""
-
-    shape: Flat
-    level: float
-    margins: tuple[float, ...]
 
 
 class Ball(NamedTuple):
@@ -79,45 +70,11 @@ def _light_placed(light, origin, frame, model):
         return lambda light, origin, frame, model: placed_dome(light, frame, model)
     if light.instance_class is Sphere:
         return ball
-    return window
+    return lambda light, origin, frame, model: window(light, origin, frame, model)
 
 
 def ball(light, origin, frame, model):
     return Ball(placed(light, origin, frame, model), like(model, level_of(light, sub(origin, light.center))))
-
-
-def window(light, origin, frame, model):
-    o = sub(origin, light.center)
-    margins = margins_of(light, dot(o, light.dual_u), dot(o, light.dual_v), model)
-    return Window(placed(light, origin, frame, model), like(model, level_of(light, o)), margins)
-
-
-def margins_of(shape, a, b, model):
-    """The `margins` of a flat shape at its parameters a, b."""
-
-
-@overload(margins_of)
-def _margins_of(shape, a, b, model):
-    return {
-        Parallelogram: lambda shape, a, b, model: (
-            like(model, 0.5 + a), like(model, 0.5 - a), like(model, 0.5 + b), like(model, 0.5 - b)),
-        Triangle: lambda shape, a, b, model: (like(model, a), like(model, b), like(model, 1 - a - b)),
-        Disk: lambda shape, a, b, model: (like(model, 2 * a), like(model, 2 * b), like(model, 1 - a * a - b * b)),
-    }[shape.instance_class]
-
-
-def within(shape, margins, a, b):
-    """Whether a step of a, b in the parameters of a flat shape stays within its `margins`."""
-
-
-@overload(within)
-def _within(shape, margins, a, b):
-    return {
-        Parallelogram: lambda shape, margins, a, b: (
-            (a >= -margins[0]) & (a <= margins[1]) & (b >= -margins[2]) & (b <= margins[3])),
-        Triangle: lambda shape, margins, a, b: (a >= -margins[0]) & (b >= -margins[1]) & (a + b <= margins[2]),
-        Disk: lambda shape, margins, a, b: a * (a + margins[0]) + b * (b + margins[1]) <= margins[2],
-    }[shape.instance_class]
 
 
 @overload(arriving, jit_options=INLINED)

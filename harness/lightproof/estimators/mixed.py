@@ -19,7 +19,7 @@ from lightproof.estimators.lamps import Facing, arriving, level_from, parameters
 from lightproof.estimators.meeting import Ball, around, light_placed, meet
 from lightproof.estimators.rng import TICK
 from lightproof.estimators.shapes import COINCIDES
-from lightproof.estimators.vectors import along, cross, dot, norm, sub
+from lightproof.estimators.vectors import TINY, along, cross, dot, norm, sub
 
 
 class Mixed(Aim):
@@ -112,4 +112,4 @@ def ball_by_cosine(seen, x, w):
     r = norm(away)
     gap = max(level_from(seen, x), 0.0) / (r + radius)
     inward = -dot(w, along(away, 1.0, d)) / radius
-    return met * (2 * np.pi * radius * radius * gap / r) * w[2] * max(inward, 0.0) / dot(d, d), d
+    return met * (2 * np.pi * radius * radius * gap / r) * w[2] * max(inward, 0.0) / max(dot(d, d), TINY), d

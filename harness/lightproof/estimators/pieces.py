@@ -7,14 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lightproof.estimators import crowd, lamps, skies, world
+from lightproof.estimators import lamps, skies, world
 from lightproof.estimators.aims import Aim
 from lightproof.estimators.blockers import Casters, between, plane_of, standing
+from lightproof.estimators.crowd import Crowd
 from lightproof.estimators.estimator import spread, tasks
 from lightproof.estimators.kernel import estimate
 from lightproof.estimators.lamps import Beam, Glow, Lamp, Point
 from lightproof.estimators.meeting import Cosine, Uniform
-from lightproof.estimators.parallel import Level, levelled
+from lightproof.estimators.parallel import Between, Level, levelled
 from lightproof.estimators.points import BLOCK, Grid, Random
 from lightproof.estimators.shapes import Flat, Sphere
 from lightproof.estimators.views import View
@@ -34,7 +35,7 @@ class Piece:
 
     lamp: Source
     source: Source | Level
-    blockers: tuple[Flat | Sphere, ...] | np.ndarray
+    blockers: tuple[Flat | Sphere | Between, ...] | Crowd
 
     @property
     def power(self) -> float:
@@ -82,5 +83,5 @@ def shadowed(casters: Casters, view: View, owner: str, source: Source) -> Piece:
     shape = getattr(source, "shape", getattr(source, "light", None))
     blockers = between(casters, owner, plane_of(shape), view.plane)
     if len(blockers.pieces) > FEW:
-        return Piece(source, source, blockers.rows.take(crowd.FIELDS, axis=1))
+        return Piece(source, source, Crowd.of(blockers.rows))
     return Piece(source, *levelled(source, blockers.pieces, view.plane))
