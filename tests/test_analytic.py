@@ -9,7 +9,7 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from test_certify import PLANE, at, blocker, lamp, scene
 from test_estimators import method
@@ -161,6 +161,7 @@ def cross(a, b):
 
 
 @given(st.lists(st.lists(corner, min_size=3, max_size=3), min_size=1, max_size=3), corner)
+@example([[(0, 0, 0), (0, 0, -1), (0, 1, 0)]], (0, 0, 0))  # on an edge
 @settings(max_examples=25, deadline=None)
 def test_any_blockers_at_any_point(blockers, place):
     """Up to three triangles anywhere, through the light's plane or the receiver's, before each other: the exact clipping of the

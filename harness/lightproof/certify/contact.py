@@ -5,14 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import count
+from math import prod
 
 from flint import arb
 
 from lightproof import geometry
-from lightproof.certify.balls import Point, cross, dot, exact, minus, point, root, times
+from lightproof.certify.balls import Number, Point, cross, dot, exact, minus, point, root, times
 from lightproof.certify.polygon import area_vector, clip, convex_parts
 
 Convex = tuple[Point, ...]
+
+ROUNDING = exact(1e-15)  # of the coordinates: how far from a polygon a receiver may be that lies on it
 
 
 def touches(shape: geometry.Shape, x: Point, normal: Point | None) -> bool:
@@ -20,7 +23,7 @@ def touches(shape: geometry.Shape, x: Point, normal: Point | None) -> bool:
     match shape:
         case geometry.Polygon():
             parts = convex_parts([point(corner) for corner in shape.vertices])
-            return any(_leaves(part, x, normal) for part in parts)
+            return any(_lies_on(part, x) and (normal is None or _leads_out(part, normal)) for part in parts)
         case geometry.Disk():
             axis, ray = point(shape.normal), minus(x, point(shape.center))
             level = normal is not None and (dot(axis, normal) == 0 or not any(cross(axis, normal)))
@@ -33,9 +36,10 @@ def touches(shape: geometry.Shape, x: Point, normal: Point | None) -> bool:
 
 def limit(parts: Iterable[Convex], x: Point, normal: Point) -> tuple[Convex, ...]:
     """Convex polygons as they are seen from x + e `normal` as e goes to 0: one that x lies on becomes the cone of directions in
-    which it then is, as triangles with a corner straight behind x. These corners differ, so that none joins two triangles."""
+    which it then is, as triangles with a corner straight behind x, or nothing where `normal` runs along it. These corners differ,
+    so that none joins two triangles."""
     behind = (minus(x, times(normal, depth)) for depth in count(1))
-    return tuple(piece for part in parts for piece in (_cone(part, x, behind) if _leaves(part, x, normal) else (part,)))
+    return tuple(piece for part in parts for piece in _seen(part, x, normal, behind))
 
 
 def overlap(a: geometry.Polygon, b: geometry.Polygon) -> bool:
@@ -56,16 +60,45 @@ def _common(part: Convex, cutter: Convex) -> bool:
     return bool(part)
 
 
-def _leaves(convex: Convex, x: Point, normal: Point | None) -> bool:
-    """Whether x lies on a convex polygon, its edges included, and `normal`, if any, leads out of its plane."""
+def _seen(part: Convex, x: Point, normal: Point, behind: Iterator[Point]) -> tuple[Convex, ...]:
+    if not _lies_on(part, x):
+        return (part,)
+    return _cone(part, x, behind) if _leads_out(part, normal) else ()
+
+
+def _leads_out(convex: Convex, normal: Point) -> bool:
+    """Whether a normal leads out of a polygon's plane, but for rounding."""
     front = area_vector(convex)
-    if dot(front, minus(x, convex[0])) != 0 or (normal is not None and dot(front, normal) == 0):
+    return _more(dot(front, normal), ROUNDING, front, normal)
+
+
+def _lies_on(convex: Convex, x: Point) -> bool:
+    """Whether x lies on a convex polygon, its edges included, but for the rounding of coordinates."""
+    front, slack = area_vector(convex), _slack(convex, x)
+    if _more(dot(front, minus(x, convex[0])), slack, front):
         return False
-    return all(dot(front, cross(minus(end, start), minus(x, start))) >= 0 for start, end in _edges(convex))
+    inwards = ((dot(front, cross(minus(end, start), minus(x, start))), minus(end, start)) for start, end in _edges(convex))
+    return all(inward >= 0 or not _more(inward, slack, front, edge) for inward, edge in inwards)
+
+
+def _slack(convex: Convex, x: Point) -> Number:
+    return ROUNDING * max(abs(number) for corner in (*convex, x) for number in corner)
+
+
+def _more(value: Number, slack: Number, *vectors: Point) -> bool:
+    """Whether a value exceeds `slack` times the lengths of the vectors."""
+    return bool(value**2 > slack**2 * prod(dot(vector, vector) for vector in vectors))
 
 
 def _cone(convex: Convex, x: Point, behind: Iterator[Point]) -> tuple[Convex, ...]:
-    return tuple((start, end, next(behind)) for start, end in _edges(convex) if any(cross(minus(start, x), minus(end, x))))
+    slack = _slack(convex, x)
+    return tuple((start, end, next(behind)) for start, end in _edges(convex) if _apart(x, start, end, slack))
+
+
+def _apart(x: Point, start: Point, end: Point, slack: Number) -> bool:
+    """Whether x is farther than `slack` from a line."""
+    aside, edge = cross(minus(start, x), minus(end, x)), minus(end, start)
+    return bool(dot(aside, aside) > slack**2 * dot(edge, edge))
 
 
 def _edges(convex: Convex) -> Iterable[tuple[Point, Point]]:

@@ -27,14 +27,13 @@ from lightproof.certify import (
     skies_curved,
     unblocked,
 )
-from lightproof.certify.balls import CannotCertify, Element, Point, dot, exact, plus, point, times
+from lightproof.certify.balls import CannotCertify, Element, Point, dot, exact, point
 from lightproof.certify.field import Field, Shape
 from lightproof.certify.planes import Frame, Plane, Region
 from lightproof.certify.provenance import Provenance
 from lightproof.scene import AreaLight, Film, PlaneFilm, PointsFilm, Scene, Surface
 
 FIELDS: tuple[ModuleType, ...] = (curved, shadows, hard_shadows, skies, skies_curved, unblocked)
-A_LITTLE = exact(2.0**-100)
 ROUNDING = exact(1e-15)  # of a corner's coordinates: how far above a plane a corner counts as lying on it
 
 
@@ -60,21 +59,25 @@ def _with_blockers(scene_: Scene) -> list[tuple[scene.Light, list[Shape]]]:
     return [(light, _blockers(scene_, light, _corners(scene_.film))) for light in scene_.lights]
 
 
-def fields(scene_: Scene, receiver: Plane, where: Sequence[Point] | None = None) -> list[Field]:
-    """One field a light for receivers on the front of a plane: anywhere on it, or between some points of it. Raises
-    CannotCertify."""
+def fields(scene_: Scene, receiver: Plane, where: Sequence[Point] | None = None, on: Sequence[Shape] = ()) -> list[Field]:
+    """One field a light for receivers on the front of a plane: anywhere on it, or between some points of it, or on some shapes.
+    Raises CannotCertify."""
     for surface in scene_.surfaces:
         if surface.radiance > 0:
             raise CannotCertify(f"surface '{surface.id}' emits light of its own; give it as an area light")
-    above = [(light, [shape for shape in _blockers(scene_, light, where) if not lies_on(shape, receiver)])
+    above = [(light, [shape for shape in _blockers(scene_, light, where, on) if not lies_on(shape, receiver)])
              for light in scene_.lights]
     return [_module(light, blockers).field(light, blockers, receiver) for light, blockers in above]
 
 
-def _blockers(scene_: Scene, light: scene.Light, where: Sequence[Point] | None) -> list[Shape]:
-    """What may stand between a light and receivers, which may be anywhere, or are between some points."""
-    others = [item for item in (*scene_.lights, *scene_.surfaces) if isinstance(item, AreaLight | Surface) and item is not light]
-    return [item.shape for item in others if where is None or between.may_hide(item.shape, light, where)]
+def _blockers(scene_: Scene, light: scene.Light, where: Sequence[Point] | None, on: Sequence[Shape] = ()) -> list[Shape]:
+    """What may stand between a light and receivers, which may be anywhere, or are between some points, or on some shapes."""
+    shapes = [item.shape for item in _things(scene_) if item is not light]
+    return [shape for shape in shapes if where is None or shape in on or between.may_hide(shape, light, where)]
+
+
+def _things(scene_: Scene) -> list[AreaLight | Surface]:
+    return [thing for thing in (*scene_.lights, *scene_.surfaces) if isinstance(thing, AreaLight | Surface)]
 
 
 def _corners(film: Film) -> list[Point] | None:
@@ -141,8 +144,8 @@ def at_point(scene_: Scene, position: geometry.Vec3, normal: geometry.Vec3) -> a
     x, n = point(position), point(normal)
     receiver = Plane(n, dot(n, x))
     _check_contact(scene_, x, receiver)
-    way = [x, plus(x, times(n, A_LITTLE))]  # what x lies on may hide something from where it comes
-    return sum((light.near(x)(x) for light in fields(scene_, receiver, way)), arb(0))
+    on = [thing.shape for thing in _things(scene_) if contact.touches(thing.shape, x, n)]
+    return sum((light.near(x)(x) for light in fields(scene_, receiver, [x], on)), arb(0))
 
 
 def _check_overlaps(scene_: Scene) -> None:
@@ -154,7 +157,7 @@ def _check_overlaps(scene_: Scene) -> None:
 
 def _check_contact(scene_: Scene, x: Point, receiver: Plane) -> None:
     """A receiver may lie on polygons, where there are no other shapes, nor lights but skies. Raises CannotCertify."""
-    things = [thing for thing in (*scene_.lights, *scene_.surfaces) if isinstance(thing, AreaLight | Surface)]
+    things = _things(scene_)
     flat = all(map(_is_polygon, things)) and all(isinstance(light, AreaLight | skies.Sky) for light in scene_.lights)
     for thing in things:
         if not flat and not lies_on(thing.shape, receiver) and contact.touches(thing.shape, x, receiver.normal):

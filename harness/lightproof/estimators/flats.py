@@ -10,6 +10,7 @@ from itertools import accumulate
 
 import numpy as np
 
+from lightproof import geometry
 from lightproof.estimators import convex
 from lightproof.estimators.polygon_lights import TOUCH, PolygonLight
 from lightproof.geometry import Polygon, Vec3
@@ -24,6 +25,7 @@ def polygon_light(shape: Polygon, radiance: float, blockers: Sequence[Polygon], 
     corners, lamp = np.array(shape.vertices), Plane.of(shape)
     parts, order = runs(convex.parts(lamp.flat))
     walls = [part for blocker in blockers for part in convex_parts(blocker)]
+    facings = [geometry.unit(geometry.vector_area(wall)) for wall in walls]
     shadows, _ = runs([tuple(range(len(wall))) for wall in walls])
     points = np.concatenate([np.zeros((0, 3)), *walls])
     return PolygonLight(
@@ -35,6 +37,7 @@ def polygon_light(shape: Polygon, radiance: float, blockers: Sequence[Polygon], 
         low=lamp.low,
         blockers=points,
         shadows=shadows,
+        facings=np.reshape(facings, (-1, 3)),
         touch=TOUCH * max(reach, float(np.abs(corners).max()), float(np.abs(points).max(initial=0))),
         room=int(np.diff(parts).max()) + len(points) + 2 * len(walls) + ROOM,
     )

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from lightproof.estimators import lambert
+from lightproof.estimators import contacts, lambert
 from lightproof.estimators.clipping import area, clip, clip_by_line, copy_all, misses
 from lightproof.estimators.compiled import strict
 from lightproof.estimators.lambert import LEVEL, A, B, S, T
@@ -22,6 +22,7 @@ from lightproof.estimators.sources import desk, irradiance
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub, turned
 
 TOUCH = 1e-13  # of the coordinates: what lies no farther from a plane coincides with it
+SAME = 0.02  # of that: a receiver that lies no farther from a blocker lies on it
 MUCH = 0.1  # distances over heights below which a step places a corner better than its edge's ends do
 BORDER = 0
 FLUSH = 1e-31  # 1 - cosine of an angle between unit vectors that rounding leaves of none
@@ -33,8 +34,8 @@ U, V, W, ABOVE, BEFORE = range(5)  # columns of a blocker's corners: the light's
 
 class PolygonLight(NamedTuple):
     """Convex `parts` (k + 1) of `corners` (m, 3), which lie at `flat` (m, 2) from the first along the first two axes of `frame`;
-    the plane's normal is the third, plus `low`. `blockers` (l, 3) come in convex `shadows` (j + 1). What lies within `touch`
-    [m] of a plane coincides with it. `room` is that for corners."""
+    the plane's normal is the third, plus `low`. `blockers` (l, 3) come in convex `shadows` (j + 1) with normals `facings` (j, 3).
+    What lies within `touch` [m] of a plane coincides with it. `room` is that for corners."""
 
     radiance: float
     corners: np.ndarray
@@ -44,17 +45,19 @@ class PolygonLight(NamedTuple):
     low: tuple
     blockers: np.ndarray
     shadows: np.ndarray
+    facings: np.ndarray
     touch: float
     room: int
 
 
 class Desk(NamedTuple):
-    """Room for a light's part, its cells, a blocker; the `lines` that bound the shadows, `sides` of them each; and a pile of
-    pieces with `counts` of corners and how many shadows were `tried`."""
+    """Room for a light's part, its cells, a blocker, planes; the `lines` that bound the shadows, `sides` of them each; and a pile
+    of pieces with `counts` of corners and how many shadows were `tried`."""
 
     light: np.ndarray
     cells: np.ndarray
     blocker: np.ndarray
+    planes: np.ndarray
     values: np.ndarray
     lines: np.ndarray
     sides: np.ndarray
@@ -75,6 +78,7 @@ def opened(source):
         np.empty((2, room, 5)),
         np.empty((lambert.DEPTH, 3, 4)),
         np.empty((3, room, 5)),
+        np.empty((room, 3)),
         np.empty(room),
         np.empty((shadows, room, 3)),
         np.zeros(shadows, np.int64),
@@ -178,11 +182,27 @@ def cast(source, desk, x, n, h):
     """The lines on the light's plane that bound the shadow of each blocker, seen from x; returns how many blockers cast one."""
     found = 0
     for k in range(len(source.shadows) - 1):
-        count = between(source, desk, k, x, n, h)
-        if count:
-            desk.sides[found] = outline(desk.blocker[2], count, h, desk.lines[found])
-            found += desk.sides[found] > 0
+        desk.sides[found] = shadow(source, desk, k, x, n, h, desk.lines[found])
+        found += desk.sides[found] > 0
     return found
+
+
+@strict
+def shadow(source, desk, k, x, n, h, lines):
+    """The lines that bound the shadow of blocker k, positive inside; returns how many (0: it casts none)."""
+    begin, end = source.shadows[k], source.shadows[k + 1]
+    count = contacts.sides(source.blockers, begin, end, point(source.facings, k), x, n, SAME * source.touch, desk.planes)
+    if count == contacts.APART:
+        return outline(desk.blocker[2], between(source, desk, k, x, n, h), h, lines)
+    for i in range(count):
+        put_line(turned(point(desk.planes, i), source.frame, 1.0), h, lines[i])
+    return count
+
+
+@strict
+def put_line(plane, h, line):
+    """Where a plane through the receiver with this normal meets the light's plane, h below, positive where the normal points."""
+    line[0], line[1], line[2] = -plane[2] * h, plane[0], plane[1]
 
 
 @strict
@@ -205,15 +225,15 @@ def between(source, desk, k, x, n, h):
 @strict
 def outline(rows, count, h, lines):
     """Where the planes through the receiver and the edges of a blocker meet the light's plane, positive inside; returns how many
-    (0: the blocker is seen edge-on)."""
+    (0: there is no blocker, or it is seen edge-on)."""
     turn = 0.0
     for i in range(1, count - 1):
         turn += dot(point(rows, 0), cross(point(rows, i), point(rows, i + 1)))
     if turn == 0:
         return 0
     for i in range(count):
-        u, v, w = scaled(1.0 if turn > 0 else -1.0, cross(point(rows, i), point(rows, i + 1 if i + 1 < count else 0)))
-        lines[i, 0], lines[i, 1], lines[i, 2] = -w * h, u, v
+        plane = cross(point(rows, i), point(rows, i + 1 if i + 1 < count else 0))
+        put_line(scaled(1.0 if turn > 0 else -1.0, plane), h, lines[i])
     return count
 
 
