@@ -21,6 +21,7 @@ from lightproof.estimators.sky_rows import SKIES, UP, sky_rows
 from lightproof.estimators.supports import crossing, plane_of, reaches
 from lightproof.estimators.terms import Term, farthest, obstacles, terms
 from lightproof.estimators.terms import receivers as rows
+from lightproof.estimators.touching import among_shapes
 from lightproof.estimators.world import Item
 from lightproof.geometry import Cylinder, Disk, Polygon, Shape, Sphere
 from lightproof.scene import (
@@ -60,7 +61,7 @@ def unsupported(scene: Scene) -> str | None:
     tubes = [thing for thing in things if isinstance(thing.shape, Cylinder)]
     if tubes and isinstance(scene.film, CameraFilm):
         return f"its camera sees no cylinders ('{tubes[0].id}' is one)"
-    return no_caps(scene) or (crossing(things) if shining(parted(scene)[1]) else None)
+    return no_caps(scene) or among_shapes(scene) or (crossing(things) if shining(parted(scene)[1]) else None)
 
 
 def receivers(scene: Scene) -> np.ndarray:

@@ -14,7 +14,7 @@ from lightproof.estimators.options import Choices
 from lightproof.estimators.paths import Paths, paths
 from lightproof.estimators.points import Random
 from lightproof.estimators.sobol import sobol
-from lightproof.estimators.touching import touching
+from lightproof.estimators.touching import too_near
 from lightproof.estimators.views import View
 from lightproof.scene import Scene
 
@@ -41,11 +41,10 @@ class Path(McArea):
         points = {} if self.view or self.points is Random else {"points": f"{self.chosen['points']} over the element"}
         return {**super().settings(), **points, "domain": "paths", "pdf": density, "roulette": "unbiased"}
 
-    def unsupported(self, scene: Scene) -> str | None:
-        return super().unsupported(scene) or (None if self.aims else no_bulbs(scene) or touching(scene))
-
     def untraceable(self, scene: Scene) -> str | None:
-        return None
+        if self.seen(scene):
+            return None
+        return (None if self.aims else no_bulbs(scene)) or too_near(scene)
 
     def seen(self, scene: Scene) -> View | None:
         return super().seen(scene) if self.aims and not any(limit(scene) for limit in McArea.limits) else None

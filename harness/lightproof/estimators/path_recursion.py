@@ -22,8 +22,8 @@ class PathRecursion(Path):
     def settings(self) -> Mapping[str, Any]:
         return {**super().settings(), "pdf": "1/(4 pi r^2) per area of the wall", "roulette": "none"}
 
-    def unsupported(self, scene: Scene) -> str | None:
-        return super().unsupported(scene) or recursion.unsupported(scene)
+    def untraceable(self, scene: Scene) -> str | None:
+        return recursion.unsupported(scene)
 
     def seen(self, scene: Scene) -> View | None:
         return None

@@ -107,7 +107,17 @@ def distance(shape: Flat, x: np.ndarray) -> np.ndarray:
         beside = np.linalg.norm(offsets - heights[:, None] * shape.normal, axis=1) - np.linalg.norm(shape.u)
         return np.hypot(heights, np.maximum(beside, 0))
     over = COVERS[type(shape)](offsets @ shape.dual_u, offsets @ shape.dual_v)
-    return np.where(over, np.abs(heights), np.min([from_edge(offsets, *edge) for edge in edges(shape)], axis=0))
+    return np.where(over, np.abs(heights), from_border(shape, x))
+
+
+def from_border(shape: Flat, x: np.ndarray) -> np.ndarray:
+    """Distance (n,) of points (n, 3) from the border of a flat shape [m]."""
+    offsets = x - np.array(shape.center)
+    if isinstance(shape, Disk):
+        heights = offsets @ shape.normal
+        beside = np.linalg.norm(offsets - heights[:, None] * shape.normal, axis=1) - np.linalg.norm(shape.u)
+        return np.hypot(heights, beside)
+    return np.min([from_edge(offsets, *edge) for edge in edges(shape)], axis=0)
 
 
 def edges(shape: Flat) -> list[tuple[np.ndarray, np.ndarray]]:
