@@ -40,7 +40,7 @@ def field(light: AreaLight, blockers: list[Shape], receiver: Plane) -> Field:
 
     def near(x: Point) -> Formula:
         lamp, shades = (contact.limit(tiles, x, receiver.normal) for tiles in (parts, between))
-        pieces = _seen(_clipped(lamp, receiver), shades, x) if _faces(face, x, receiver) else []
+        pieces = _seen(_clipped(lamp, receiver), shades, x) if _faces(face, parts, x, receiver) else []
         contours = [Contour.at(piece, x) for piece in pieces]
         return lambda y: radiance * contour.total(contours, y, normal)
 
@@ -77,10 +77,11 @@ def _clipped(parts: Iterable[Convex], floor: Plane) -> list[Convex]:
     return [kept for part in parts if (kept := clip(part, floor.normal, floor.offset))]
 
 
-def _faces(face: Plane, x: Point, receiver: Plane) -> bool:
-    """Whether a receiver is in front of a light, or in its plane and comes from the front."""
+def _faces(face: Plane, parts: Iterable[Convex], x: Point, receiver: Plane) -> bool:
+    """Whether a receiver is in front of a light, or on it or in its plane and comes from the front."""
     height = face.height(x)
-    return bool(height > 0 or (height == 0 and dot(face.normal, receiver.normal) > 0))
+    level = height == 0 or any(contact.holds(part, x) for part in parts)
+    return bool(dot(face.normal, receiver.normal) > 0 if level else height > 0)
 
 
 def _polygon(shape: Shape) -> geometry.Polygon:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from lightproof import geometry
-from lightproof.certify import planes
-from lightproof.certify.balls import CannotCertify, Point, cross, dot, minus, point
+from lightproof.certify import contact, planes
+from lightproof.certify.balls import CannotCertify, Point, point
 from lightproof.certify.loops import Convex, Region, cut, union
 from lightproof.certify.planes import Plane
 from lightproof.certify.polygon import convex_parts, loop, visible_pieces
@@ -26,19 +26,11 @@ class Face:
 def face(shape: geometry.Polygon, x: Point, light: bool) -> Face | None:
     """A polygon as a receiver sees it; None where it is seen edge-on. Raises CannotCertify for a receiver on it."""
     corners = tuple(map(point, shape.vertices))
-    tiles, plane = convex_parts(corners), planes.of(corners)
-    height = plane.height(x)
-    if height:
-        return Face(tuple(tiles), plane if height > 0 else plane.turned, light and height > 0)
-    if any(_holds(corners, plane.normal, x) for corners in tiles):
+    if contact.touches(shape, x, None):
         raise CannotCertify("a receiver lies on a polygon, from where a solid angle has no one value")
-    return None
-
-
-def _holds(corners: Sequence[Point], normal: Point, x: Point) -> bool:
-    """Whether a convex polygon, its rim included, holds a point of its plane."""
-    sides = [dot(normal, cross(minus(corner, corners[i - 1]), minus(x, corner))) for i, corner in enumerate(corners)]
-    return all(side >= 0 for side in sides) or all(side <= 0 for side in sides)
+    plane = planes.of(corners)
+    height = plane.height(x)
+    return Face(tuple(convex_parts(corners)), plane if height > 0 else plane.turned, light and height > 0) if height else None
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from numba.extending import overload
 from lightproof import geometry
 from lightproof.estimators.compiled import INLINED
 from lightproof.estimators.extents import reaching
-from lightproof.estimators.shapes import Disk, Flat, Parallelogram, Sphere, Triangle, parts, placed
+from lightproof.estimators.shapes import Flat, Sphere, parts, placed
 from lightproof.estimators.vectors import dot, like, sub
-from lightproof.estimators.windows import Window, window
+from lightproof.estimators.windows import Window, window, within
 from lightproof.estimators.world import WIDTH, Item, item_row
 from lightproof.scene import Scene
 
@@ -82,38 +82,12 @@ def _hidden(blocker, x, d):
 
 
 def _behind_window(blocker, x, d):
-    """Without a division: parameters of where the segment's line meets the plane, from below the element's middle, times the
-    slope of the segment."""
+    """By the parameters, from below the element's middle, of where the segment's line meets the plane, times its slope."""
     shape = blocker.shape
     above, slope = dot(x, shape.normal) + blocker.level, dot(d, shape.normal)
     s = dot(x, shape.dual_u) * slope - above * dot(d, shape.dual_u)
     t = dot(x, shape.dual_v) * slope - above * dot(d, shape.dual_v)
-    return (above * (above + slope) < like(slope, 0)) & within_times(shape, blocker.margins, s, t, slope)
-
-
-def within_times(shape, margins, s, t, scale):
-    """`windows.within` of a step that is s, t over `scale`."""
-
-
-@overload(within_times, jit_options=INLINED)
-def _within_times(shape, margins, s, t, scale):
-    return {Parallelogram: _within_parallelogram, Triangle: _within_triangle, Disk: _within_disk}[shape.instance_class]
-
-
-def _within_parallelogram(shape, margins, s, t, scale):
-    zero = like(scale, 0)
-    along_u = (s + margins[0] * scale) * (margins[1] * scale - s) >= zero
-    return along_u & ((t + margins[2] * scale) * (margins[3] * scale - t) >= zero)
-
-
-def _within_triangle(shape, margins, s, t, scale):
-    zero = like(scale, 0)
-    beyond_sides = ((s + margins[0] * scale) * scale >= zero) & ((t + margins[1] * scale) * scale >= zero)
-    return beyond_sides & ((margins[2] * scale - s - t) * scale >= zero)
-
-
-def _within_disk(shape, margins, s, t, scale):
-    return s * (s + margins[0] * scale) + t * (t + margins[1] * scale) <= margins[2] * scale * scale
+    return (above * (above + slope) < like(slope, 0)) & within(shape, blocker.margins, s, t, slope)
 
 
 def _behind_sphere(blocker, x, d):

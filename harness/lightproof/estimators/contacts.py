@@ -7,6 +7,7 @@ import math
 
 from lightproof.estimators.compiled import strict
 from lightproof.estimators.rows import point
+from lightproof.estimators.shapes import COINCIDES
 from lightproof.estimators.vectors import cross, dot, norm, scaled, sub
 from lightproof.estimators.windows import ALONG
 
@@ -14,11 +15,17 @@ APART = -1
 
 
 @strict
-def sides(corners, begin, end, facing, x, n, slack, out):
+def slack(reach, x):
+    """How far a receiver that lies on a polygon with coordinates up to `reach` may be from it by rounding [m]."""
+    return COINCIDES * max(reach, abs(x[0]), abs(x[1]), abs(x[2]))
+
+
+@strict
+def sides(corners, begin, end, facing, x, n, least, out):
     """Normals of the planes through x that bound the shadow, pointing into it, into `out` (end - begin + 1, 3); returns how many:
-    none where n, a unit vector, runs along the polygon, and APART where x is farther than `slack` [m] from it. `facing` is its
+    none where n, a unit vector, runs along the polygon, and APART where x is farther than `least` [m] from it. `facing` is its
     unit normal, about which `corners` from `begin` to `end` run."""
-    if abs(dot(facing, sub(point(corners, begin), x))) > slack:
+    if abs(dot(facing, sub(point(corners, begin), x))) > least:
         return APART
     rise = dot(n, facing)
     side = math.copysign(1.0, rise)
@@ -26,7 +33,7 @@ def sides(corners, begin, end, facing, x, n, slack, out):
     found = 1
     for i in range(begin, end):
         edge = sub(point(corners, i + 1 if i + 1 < end else begin), point(corners, i))
-        inwards, least = dot(cross(facing, edge), sub(x, point(corners, i))), slack * norm(edge)
+        inwards = dot(cross(facing, edge), sub(x, point(corners, i))) / norm(edge)
         if inwards < -least:
             return APART
         if inwards <= least:

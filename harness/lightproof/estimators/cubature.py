@@ -15,7 +15,7 @@ from lightproof.estimators.heaps import pop, push
 from lightproof.estimators.limits import no_caps, no_cylinders, no_glowing_inside, no_reflections, no_skies, no_solid_angle
 from lightproof.estimators.refining import DARK, FINEST, SMOOTH, appraise, cost, likely, summed
 from lightproof.estimators.shapes import Sphere
-from lightproof.estimators.touching import on_anything
+from lightproof.estimators.touching import nothing_below
 from lightproof.estimators.views import view
 from lightproof.method import Rendering
 from lightproof.scene import DirectionalLight, PointLight, Scene
@@ -131,7 +131,7 @@ class Cubature(Estimator):
     """`samples` are the points of an element's rules; the film comes with its bound."""
 
     deterministic = True
-    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_skies, no_glowing_inside, no_balls, on_anything)
+    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_skies, no_glowing_inside, no_balls, nothing_below)
 
     def unsupported(self, scene: Scene) -> str | None:
         return super().unsupported(scene) or self.unseen(scene)

@@ -15,7 +15,7 @@ from lightproof.estimators.peaks import largest
 from lightproof.estimators.pieces import Piece, aimed
 from lightproof.estimators.points import Random
 from lightproof.estimators.sampling import Sampling
-from lightproof.estimators.touching import on_light
+from lightproof.estimators.touching import no_light_below
 from lightproof.estimators.views import View
 from lightproof.method import Rendering
 from lightproof.scene import Scene
@@ -29,7 +29,7 @@ class McArea(Sampling):
 
     domain = "area of the light"
     density = "1/A per area, uniform over the light; of a sphere, over the cap that faces the receiver"
-    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_skies, no_glowing_inside, on_light)
+    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_skies, no_glowing_inside, no_light_below)
 
     def build(self, scene: Scene) -> None:
         super().build(scene)

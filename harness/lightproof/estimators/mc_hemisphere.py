@@ -12,7 +12,7 @@ from lightproof.estimators.limits import no_bulbs, no_caps, no_cylinders, no_ref
 from lightproof.estimators.meeting import Cosine, Uniform
 from lightproof.estimators.pieces import Piece, met
 from lightproof.estimators.sampling import Sampling
-from lightproof.estimators.touching import on_ball
+from lightproof.estimators.touching import no_ball_below
 from lightproof.estimators.views import View, view_from_outside
 from lightproof.method import Rendering
 from lightproof.scene import Scene
@@ -24,7 +24,7 @@ class McHemisphere(Sampling):
     domain = "hemisphere of the receiver"
     density = "1/(2 pi) per solid angle"
     samples_lights = False
-    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_bulbs, on_ball)
+    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_bulbs, no_ball_below)
     source: ClassVar[type[Uniform | Cosine]] = Uniform
 
     def seen(self, scene: Scene) -> View | None:

@@ -120,7 +120,7 @@ def _meet_window(light, x, w):
     d = scaled(above / max(approach, like(above, GRAZING)), w)
     a, b = dot(x, shape.dual_u) + dot(d, shape.dual_u), dot(x, shape.dual_v) + dot(d, shape.dual_v)
     facing = (above > like(above, 0)) & (approach > like(above, GRAZING))
-    return like(above, 1) if facing & within(shape, light.margins, a, b) else like(above, 0), d
+    return like(above, 1) if facing & within(shape, light.margins, a, b, like(above, 1)) else like(above, 0), d
 
 
 def _meet_ball(light, x, w):

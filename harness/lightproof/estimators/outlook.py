@@ -21,7 +21,7 @@ from lightproof.estimators.sky_rows import SKIES, UP, sky_rows
 from lightproof.estimators.supports import crossing, plane_of, reaches
 from lightproof.estimators.terms import Term, farthest, obstacles, terms
 from lightproof.estimators.terms import receivers as rows
-from lightproof.estimators.touching import among_shapes
+from lightproof.estimators.touching import no_edge_below, nothing_touched
 from lightproof.estimators.world import Item
 from lightproof.geometry import Cylinder, Disk, Polygon, Shape, Sphere
 from lightproof.scene import (
@@ -61,7 +61,8 @@ def unsupported(scene: Scene) -> str | None:
     tubes = [thing for thing in things if isinstance(thing.shape, Cylinder)]
     if tubes and isinstance(scene.film, CameraFilm):
         return f"its camera sees no cylinders ('{tubes[0].id}' is one)"
-    return no_caps(scene) or among_shapes(scene) or (crossing(things) if shining(parted(scene)[1]) else None)
+    on_something = nothing_touched(scene) if angular(scene) else no_edge_below(scene)
+    return no_caps(scene) or on_something or (crossing(things) if shining(parted(scene)[1]) else None)
 
 
 def receivers(scene: Scene) -> np.ndarray:

@@ -22,7 +22,6 @@ from lightproof.estimators.sources import desk, irradiance
 from lightproof.estimators.vectors import along, cross, dot, norm, scaled, sub, turned
 
 TOUCH = 1e-13  # of the coordinates: what lies no farther from a plane coincides with it
-SAME = 0.02  # of that: a receiver that lies no farther from a blocker lies on it
 MUCH = 0.1  # distances over heights below which a step places a corner better than its edge's ends do
 BORDER = 0
 FLUSH = 1e-31  # 1 - cosine of an angle between unit vectors that rounding leaves of none
@@ -34,8 +33,9 @@ U, V, W, ABOVE, BEFORE = range(5)  # columns of a blocker's corners: the light's
 
 class PolygonLight(NamedTuple):
     """Convex `parts` (k + 1) of `corners` (m, 3), which lie at `flat` (m, 2) from the first along the first two axes of `frame`;
-    the plane's normal is the third, plus `low`. `blockers` (l, 3) come in convex `shadows` (j + 1) with normals `facings` (j, 3).
-    What lies within `touch` [m] of a plane coincides with it. `room` is that for corners."""
+    the plane's normal is the third, plus `low`, and `reach` the largest coordinate. `blockers` (l, 3) come in convex `shadows`
+    (j + 1) with normals `facings` (j, 3) and largest coordinates `reaches` (j,). What lies within `touch` [m] of a plane
+    coincides with it. `room` is that for corners."""
 
     radiance: float
     corners: np.ndarray
@@ -43,9 +43,11 @@ class PolygonLight(NamedTuple):
     parts: np.ndarray
     frame: tuple
     low: tuple
+    reach: float
     blockers: np.ndarray
     shadows: np.ndarray
     facings: np.ndarray
+    reaches: np.ndarray
     touch: float
     room: int
 
@@ -96,6 +98,8 @@ def _irradiance(source, desk, x, n):
 def from_polygon(source, desk, x, n):
     h = -level(source.frame[2], source.low, point(source.corners, 0), x)
     unit = scaled(1 / norm(n), n)
+    if abs(h) <= contacts.slack(source.reach, x) and place(source, x) >= BORDER:
+        h = 0.0
     if h > 0:
         return source.radiance * in_front(source, desk, x, n, unit, h)
     rise = dot(unit, source.frame[2])
@@ -191,7 +195,8 @@ def cast(source, desk, x, n, h):
 def shadow(source, desk, k, x, n, h, lines):
     """The lines that bound the shadow of blocker k, positive inside; returns how many (0: it casts none)."""
     begin, end = source.shadows[k], source.shadows[k + 1]
-    count = contacts.sides(source.blockers, begin, end, point(source.facings, k), x, n, SAME * source.touch, desk.planes)
+    least = contacts.slack(source.reaches[k], x)
+    count = contacts.sides(source.blockers, begin, end, point(source.facings, k), x, n, least, desk.planes)
     if count == contacts.APART:
         return outline(desk.blocker[2], between(source, desk, k, x, n, h), h, lines)
     for i in range(count):

@@ -24,9 +24,9 @@ def once(scene: Scene) -> Scene:
         return scene
     if isinstance(scene.film, CameraFilm):
         return replace(scene, max_bounces=1)
-    evenly = all(lit_evenly(scene, surface) for surface in reflecting)
-    surfaces = tuple(glowing(scene, surface) for surface in scene.surfaces)
-    return replace(scene, surfaces=surfaces, max_bounces=0) if evenly else scene
+    if not all(lit_evenly(scene, surface) for surface in reflecting):
+        return scene
+    return replace(scene, surfaces=tuple(glowing(scene, surface) for surface in scene.surfaces), max_bounces=0)
 
 
 def exchange(one: Shape, other: Shape) -> bool:

@@ -11,7 +11,7 @@ from lightproof.estimators.limits import no_caps, no_cylinders, no_reflections, 
 from lightproof.estimators.pieces import Piece, aimed
 from lightproof.estimators.points import Grid, grid
 from lightproof.estimators.riemann import Riemann
-from lightproof.estimators.touching import on_light
+from lightproof.estimators.touching import no_light_below
 from lightproof.estimators.tracing import receive
 from lightproof.estimators.views import View
 from lightproof.estimators.world import SAMPLED
@@ -47,7 +47,7 @@ def estimate(items, skies, bulbs, film, elements, contact, side, light_side, out
 class RiemannArea(Riemann):
     """Direct light from everything that has an area; `samples` become two square grids, as near as squares allow."""
 
-    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_skies, on_light)
+    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_skies, no_light_below)
 
     def build(self, scene: Scene) -> None:
         super().build(scene)

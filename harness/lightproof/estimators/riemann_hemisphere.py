@@ -14,7 +14,7 @@ from lightproof.estimators.meeting import Uniform
 from lightproof.estimators.pieces import Piece, met
 from lightproof.estimators.points import Grid, grid
 from lightproof.estimators.riemann import Riemann
-from lightproof.estimators.touching import on_ball
+from lightproof.estimators.touching import no_ball_below
 from lightproof.estimators.tracing import receive, seen
 from lightproof.estimators.views import View, view_from_outside
 from lightproof.scene import Scene
@@ -49,7 +49,7 @@ class RiemannHemisphere(Riemann):
     """Direct light that fills a solid angle; `samples` become a square grid of the element times rings of directions."""
 
     samples_lights = False
-    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_bulbs, on_ball)
+    limits = (no_cylinders, no_caps, no_solid_angle, no_reflections, no_bulbs, no_ball_below)
 
     def seen(self, scene: Scene) -> View | None:
         return view_from_outside(scene)

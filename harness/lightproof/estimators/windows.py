@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 from numba.extending import overload
 
-from lightproof.estimators.compiled import inlined, strict
+from lightproof.estimators.compiled import INLINED, inlined, strict
 from lightproof.estimators.shapes import COINCIDES, Disk, Flat, Parallelogram, Triangle, placed
 from lightproof.estimators.vectors import dot, like, norm, sub
 
-ALONG = 1e-15  # cosine of an angle that is a right one
-NEAR = 1e-18  # of a shape's size: how far from it an element is that lies on it
+ALONG = 1e-15  # largest cosine of an angle that counts as a right one
+NEAR = 1e-18  # of a shape's size: how far from it an element that lies on it is put
 
 
 class Window(NamedTuple):
@@ -32,12 +32,14 @@ def window(shape, origin, frame, model):
     o, size = sub(origin, shape.center), norm(shape.u) + norm(shape.v)
     a, b = dot(o, shape.dual_u), dot(o, shape.dual_v)
     margins, slack = margins_of(shape, a, b), COINCIDES * (size + norm(origin))
-    if abs(dot(o, shape.normal)) > slack or not holds(shape, margins, -slack / size):
-        return Window(placed(shape, origin, frame, model), like(model, height(shape, o)), settled(margins, margins, 0.0, model))
+    slacks = changes_of(shape, abs(a), abs(b), slack * norm(shape.dual_u), slack * norm(shape.dual_v))
+    seen = placed(shape, origin, frame, model)
+    if abs(dot(o, shape.normal)) > slack or not holds(shape, margins, slacks):
+        return Window(seen, like(model, height(shape, o)), settled(margins, margins, slacks, model))
     rise = dot(frame[2], shape.normal)
     step = NEAR * size if abs(rise) > ALONG else 0.0
-    drifts = drifts_of(shape, a, b, step * dot(frame[2], shape.dual_u), step * dot(frame[2], shape.dual_v))
-    return Window(placed(shape, origin, frame, model), like(model, step * rise), settled(margins, drifts, slack / size, model))
+    drifts = changes_of(shape, a, b, step * dot(frame[2], shape.dual_u), step * dot(frame[2], shape.dual_v))
+    return Window(seen, like(model, step * rise), settled(margins, drifts, slacks, model))
 
 
 @strict
@@ -60,12 +62,12 @@ def _margins_of(shape, a, b):
     }[shape.instance_class]
 
 
-def drifts_of(shape, a, b, da, db):
-    """How the margins change as the parameters do."""
+def changes_of(shape, a, b, da, db):
+    """How much the margins change as the parameters change by da, db."""
 
 
-@overload(drifts_of)
-def _drifts_of(shape, a, b, da, db):
+@overload(changes_of)
+def _changes_of(shape, a, b, da, db):
     return {
         Parallelogram: lambda shape, a, b, da, db: (da, -da, db, -db),
         Triangle: lambda shape, a, b, da, db: (da, db, -da - db),
@@ -73,40 +75,53 @@ def _drifts_of(shape, a, b, da, db):
     }[shape.instance_class]
 
 
-def holds(shape, margins, least):
-    """Whether no edge is nearer than `least`."""
+def holds(shape, margins, slacks):
+    """Whether margins are those of a point of the shape, but for slacks of either sign."""
 
 
 @overload(holds)
-def _holds(shape, margins, least):
+def _holds(shape, margins, slacks):
     if shape.instance_class is Disk:
-        return lambda shape, margins, least: margins[2] >= least
-    return lambda shape, margins, least: min(margins) >= least
+        return lambda shape, margins, slacks: margins[2] >= -abs(slacks[2])
+    if len(margins) == 0:
+        return lambda shape, margins, slacks: True
+    return lambda shape, margins, slacks: margins[0] >= -abs(slacks[0]) and holds(shape, margins[1:], slacks[1:])
 
 
-def settled(margins, drifts, slack, model):
-    """Margins in the type of `model`: those that may be rounding are what they drift by."""
+def settled(margins, drifts, slacks, model):
+    """Margins in the type of `model`: those within the slacks are what they drift by."""
 
 
 @overload(settled)
-def _settled(margins, drifts, slack, model):
+def _settled(margins, drifts, slacks, model):
     if len(margins) == 0:
-        return lambda margins, drifts, slack, model: ()
-    return lambda margins, drifts, slack, model: (
-        like(model, margins[0] if abs(margins[0]) > slack else drifts[0]),
-        *settled(margins[1:], drifts[1:], slack, model),
+        return lambda margins, drifts, slacks, model: ()
+    return lambda margins, drifts, slacks, model: (
+        like(model, margins[0] if abs(margins[0]) > abs(slacks[0]) else drifts[0]),
+        *settled(margins[1:], drifts[1:], slacks[1:], model),
     )
 
 
-def within(shape, margins, a, b):
-    """Whether a step of a, b in the parameters of a flat shape stays within its `margins`."""
+def within(shape, margins, s, t, scale):
+    """Whether a step of s, t over `scale` in the parameters of a flat shape stays within its `margins`, without a division."""
 
 
-@overload(within)
-def _within(shape, margins, a, b):
-    return {
-        Parallelogram: lambda shape, margins, a, b: (
-            (a >= -margins[0]) & (a <= margins[1]) & (b >= -margins[2]) & (b <= margins[3])),
-        Triangle: lambda shape, margins, a, b: (a >= -margins[0]) & (b >= -margins[1]) & (a + b <= margins[2]),
-        Disk: lambda shape, margins, a, b: a * (a + margins[0]) + b * (b + margins[1]) <= margins[2],
-    }[shape.instance_class]
+@overload(within, jit_options=INLINED)
+def _within(shape, margins, s, t, scale):
+    return {Parallelogram: _within_parallelogram, Triangle: _within_triangle, Disk: _within_disk}[shape.instance_class]
+
+
+def _within_parallelogram(shape, margins, s, t, scale):
+    zero = like(scale, 0)
+    along_u = (s + margins[0] * scale) * (margins[1] * scale - s) >= zero
+    return along_u & ((t + margins[2] * scale) * (margins[3] * scale - t) >= zero)
+
+
+def _within_triangle(shape, margins, s, t, scale):
+    zero = like(scale, 0)
+    beyond_sides = ((s + margins[0] * scale) * scale >= zero) & ((t + margins[1] * scale) * scale >= zero)
+    return beyond_sides & ((margins[2] * scale - s - t) * scale >= zero)
+
+
+def _within_disk(shape, margins, s, t, scale):
+    return s * (s + margins[0] * scale) + t * (t + margins[1] * scale) <= margins[2] * scale * scale
