@@ -17,6 +17,7 @@ from lightproof.estimators.mc_solid_angle import McSolidAngle
 from lightproof.estimators.textbook import Textbook
 from lightproof.judging import Judge
 from lightproof.reporting import hard, hard_charts, hard_findings, hard_page, hard_promises, hard_spread, page, sweeps
+from lightproof.reporting.configurations import together
 from lightproof.reporting.evaluation import Cell, Evaluation
 from lightproof.reporting.hard_deviation import Deviation
 from lightproof.scene import Scene
@@ -290,6 +291,21 @@ def test_a_method_with_much_scatter_is_not_called_sound():
     assert sentence == ("blind to errors of more than 1 % at a distance to the lamp of 1 m and more: noise hides up to the share"
                         " of the light in brackets")
     assert re.fullmatch(r"mc-area \((6|7|8|9|10)\d\s%\)", label)
+
+
+def test_configurations_of_which_the_same_is_true_are_named_together():
+    """All those that the run has, with the same in brackets: not so where one is missing, or another amount is said of it."""
+    run = ["analytic", "mc-area", "mc-area/sobol", "mc-area/float64", "path", "path/sobol", "mc-mis", "mc-mis/sobol", "mine"]
+    said = {"analytic": "", "mc-area": "7 %", "mc-area/sobol": "7 %", "mc-area/float64": "7 %", "path": "", "mc-mis": "",
+            "mc-mis/sobol": "8 %", "mine": "9 %"}
+    assert together(said, run) == ["analytic", "mc-area (all 3, 7 %)", "path", "mc-mis", "mc-mis/sobol (8 %)", "mine (9 %)"]
+    assert together(dict.fromkeys(run, ""), run) == ["analytic", "mc-area (all 3)", "path (all 2)", "mc-mis (all 2)", "mine"]
+
+
+def test_sentences_name_configurations_together():
+    """Two of one method that hold, and one of two of another."""
+    cells = [scattered(1e-4, name) for name in ("mc-area", "mc-area/sobol", "mc-mis")] + [scattered(10, "mc-mis/sobol")]
+    assert said_of(judged_on([DISTANCE], *cells))[hard_findings.SOUND] == ["mc-area (all 2)", "mc-mis"]
 
 
 STRIPS = [CATALOGUE.scene(f"hard-aspect{case}") for case in ("", ":strip-1e4", ":strip-1e8")]

@@ -18,7 +18,8 @@ ROW = 26  # pixels
 COLOURS = ("#1f83c7", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c6bb1", "#a6761d", "#5b8c3a", "#e0457b",
            "#6b7a8f", "#2fa7a0")
 SHAPES = ("circle", "square", "triangle-up", "diamond", "cross")
-LEGEND = alt.Legend(title=None, orient="bottom", columns=alt.ExprRef(expr="width < 420 ? 1 : width < 800 ? 2 : 4"))
+LEGEND = alt.Legend(title=None, orient="bottom", symbolLimit=0,  # all of them, however many
+                    columns=alt.ExprRef(expr="width < 420 ? 1 : width < 800 ? 2 : 4"))
 SECONDS = ("datum.value >= 1 ? format(datum.value, '~g') + ' s' : datum.value >= 0.001 ? format(1000 * datum.value, '~g') + ' ms'"
            " : format(1000000 * datum.value, '~g') + ' µs'")
 

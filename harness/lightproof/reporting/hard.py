@@ -101,6 +101,11 @@ class Group:
         return names[0] if len(names) == 1 else f"{names[0]} … {names[-1].rpartition(':')[2]}"
 
     @property
+    def methods(self) -> list[str]:
+        """Those of the whole run."""
+        return [square.method for square in self.rows[0].squares]
+
+    @property
     def sweep(self) -> sweeps.Sweep | None:
         return sweeps.of(self.rows[0].scene)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from lightproof.reporting.configurations import together
 from lightproof.reporting.hard import Group, Row, Square
 from lightproof.reporting.hard_deviation import Deviation
 from lightproof.reporting.sweeps import Sweep
@@ -19,11 +20,12 @@ SOUND = f"no systematic error of more than {SAID}"
 def findings(group: Group) -> dict[str, list[str]]:
     """Sentence -> the methods of which it is true, with how much in brackets where it is of each another amount; the last is of
     those of which there is nothing to say."""
-    said: dict[str, list[str]] = {}
+    said: dict[str, dict[str, str]] = {}
     for squares in zip(*(row.squares for row in group.rows), strict=True):
         for sentence, most in _sentences(group, squares).items():
-            said.setdefault(sentence, []).append(squares[0].method + (f" ({most})" if most else ""))
-    return dict(sorted(said.items(), key=lambda item: item[0].startswith(SOUND)))
+            said.setdefault(sentence, {})[squares[0].method] = most
+    order = sorted(said, key=lambda sentence: sentence.startswith(SOUND))
+    return {sentence: together(said[sentence], group.methods) for sentence in order}
 
 
 def _sentences(group: Group, squares: Sequence[Square]) -> dict[str, str]:

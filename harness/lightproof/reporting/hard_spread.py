@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from lightproof.reporting.configurations import together
 from lightproof.reporting.hard import Group, Row, Square
 from lightproof.reporting.hard_deviation import Deviation
 from lightproof.reporting.hard_findings import BROKEN, missing, where
@@ -63,12 +64,13 @@ def of(square: Square) -> Spread | None:
 def sentences(group: Group) -> dict[str, list[str]]:
     """Sentence -> the sampling methods of which it is true: that scatter little, that do not, and of which nobody can tell; empty
     where nothing is swept."""
-    said: dict[str, list[str]] = {}
+    said: dict[str, dict[str, str]] = {}
     for squares in zip(*(row.squares for row in group.rows), strict=True) if group.swept else ():
         spreads = [(row, spread) for row, square in zip(group.rows, squares, strict=True) if (spread := of(square))]
         for sentence in _sentences(group, spreads, bool(missing(group.rows, squares))):
-            said.setdefault(sentence, []).append(squares[0].method)
-    return dict(sorted(said.items(), key=lambda item: (not item[0].startswith(FLAT), not item[0].startswith(EXPLODES))))
+            said.setdefault(sentence, {})[squares[0].method] = ""
+    order = sorted(said, key=lambda sentence: (not sentence.startswith(FLAT), not sentence.startswith(EXPLODES)))
+    return {sentence: together(said[sentence], group.methods) for sentence in order}
 
 
 def _sentences(group: Group, spreads: list[tuple[Row, Spread]], partly: bool) -> list[str]:
