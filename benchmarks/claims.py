@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ladders import AT_MOST, EXTRAPOLATED, SHORTEST, Ladder, ladders
 from lightproof import suite
-from race import family, is_ours
+from lightproof.renderers.registry import family, is_ours
 from ratios import difference, over_rounds, ratio
 from rows import Estimate, Row
 

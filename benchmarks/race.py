@@ -11,7 +11,7 @@ from statistics import median
 from lightproof.method import Unavailable
 from lightproof.renderers.pool import MethodFailed, Pool
 from lightproof.renderers.process import WorkerDied
-from lightproof.renderers.registry import METHODS, OURS, Entry
+from lightproof.renderers.registry import METHODS, OURS, Entry, family
 from lightproof.scene import Scene
 from lightproof.scene_file import BASE
 from lightproof.trial import Result, Status, Trial
@@ -120,16 +120,6 @@ def renderers() -> dict[str, list[Entry]]:
         if entry.worker != OURS:
             found.setdefault(family(entry.name), []).append(entry)
     return found
-
-
-def family(method: str) -> str:
-    """The renderer that a configuration is of."""
-    return method.partition("/")[0]
-
-
-def is_ours(method: str) -> bool:
-    """Whether a method of the registry is in-house."""
-    return method in METHODS and METHODS[method].worker == OURS
 
 
 def phases(bench: str, result: Result) -> list[Row]:

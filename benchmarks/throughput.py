@@ -12,10 +12,10 @@ from pathlib import Path
 
 from lightproof import suite
 from lightproof.estimators.rates import DOMAINS
-from lightproof.renderers.registry import METHODS, Entry
+from lightproof.renderers.registry import METHODS, Entry, family
 from lightproof.scene import Scene
 from lightproof.trial import Result, Status
-from race import Film, Track, failure, family, ours, phases, renderers
+from race import Film, Track, failure, ours, phases, renderers
 from rows import Row
 
 NAME = "throughput"

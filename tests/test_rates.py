@@ -8,7 +8,7 @@ import pytest
 
 from lightproof.estimators import rates
 from lightproof.estimators.rates import DOMAINS, GRIDS, POINTS
-from lightproof.renderers.registry import METHODS, OURS
+from lightproof.renderers.registry import METHODS, OURS, family
 
 README = (Path(rates.__file__).parent / "README.md").read_text(encoding="utf-8")
 ROWS = {line.split(" | ")[0]: line.strip("|\n ").split(" | ") for line in README.splitlines() if line.startswith("| ")}
@@ -26,7 +26,7 @@ def test_the_readme_prints_the_rates_of_the_code(row, columns, expected):
 
 def test_every_method_of_ours_samples_something_that_is_named():
     """But the closed forms, well computed or not, which have no error to fall, and cubature, whose rates are its bound's."""
-    ours = {name.partition("/")[0] for name, entry in METHODS.items() if entry.worker == OURS}
+    ours = {family(name) for name, entry in METHODS.items() if entry.worker == OURS}
     assert set(DOMAINS) == ours - {"analytic", "textbook", "cubature"}
     assert set(GRIDS) <= set(DOMAINS)
 

@@ -14,7 +14,7 @@ from rich.text import Text
 from lightproof import suite
 from lightproof.cli.selection import NIGHTLY, QUICK, check_tags
 from lightproof.cli.status import DONE, UsageError
-from lightproof.renderers.registry import METHODS
+from lightproof.renderers.registry import METHODS, family
 from lightproof.scene import TAGS, Scene
 from lightproof.suite import Suite
 
@@ -72,7 +72,7 @@ def _methods() -> Table:
     """A row a family; only what has no option runs by default."""
     table = Table(Column("method", no_wrap=True), "options, as in mitsuba/sobol", "extra", "runs", title="Methods",
                   title_justify="left", caption=EXTRAS, caption_justify="left")
-    for name, members in groupby(METHODS.values(), key=lambda entry: entry.name.partition("/")[0]):
+    for name, members in groupby(METHODS.values(), key=lambda entry: family(entry.name)):
         bare, *others = members
         options = ", ".join(entry.name.partition("/")[2] for entry in others)
         table.add_row(*map(Text, (name, options, bare.extra, "nightly" if bare.nightly else "by default")))

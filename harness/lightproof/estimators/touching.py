@@ -80,7 +80,9 @@ def nothing_touched(scene: Scene) -> str | None:
 
 def lying(scene: Scene, pieces: Iterable[Piece], part: str = "", away: Callable = outside) -> str | None:
     """On which piece, or which `part` of it, `away` from which distances are measured, a receiver lies at a slant."""
-    for owner, _ in touched(scene, pieces, 0.0, away) if isinstance(scene.film, PointsFilm) else ():
+    if not isinstance(scene.film, PointsFilm):
+        return None
+    for owner, _ in touched(scene, pieces, 0.0, away):
         return f"a receiver lies on {part}'{owner}' at a slant, where it does not take the limit; {ADVICE}"
     return None
 

@@ -80,9 +80,19 @@ METHODS = {
 }
 
 
+def family(method: str) -> str:
+    """The method that a configuration is one of."""
+    return method.partition("/")[0]
+
+
+def is_ours(method: str) -> bool:
+    """Whether a method is one of the in-house estimators, and no renderer."""
+    return method in METHODS and METHODS[method].worker == OURS
+
+
 def unknown(name: str) -> str:
     """What to say of a name that no method has: which come closest, or else which families there are."""
-    families = list(dict.fromkeys(method.partition("/")[0] for method in METHODS))
+    families = list(dict.fromkeys(map(family, METHODS)))
     close = difflib.get_close_matches(name, METHODS if "/" in name else families)
     advice = f"did you mean {' or '.join(close)}?" if close else f"there are {', '.join(families)}, some of them in several"
     tail = "'lightproof list' shows all" if close else "configurations that 'lightproof list' shows"

@@ -12,7 +12,7 @@ import numpy as np
 from lightproof import statistics
 from lightproof.judging import Judge
 from lightproof.references import Reference
-from lightproof.renderers.registry import METHODS, OURS
+from lightproof.renderers.registry import METHODS, is_ours
 from lightproof.scale import Scale
 from lightproof.scene import Scene
 from lightproof.store import Run, Store
@@ -158,7 +158,7 @@ def _rank(method: str) -> tuple[int, int, str]:
     """A reader's own methods first, then renderers, then ours, in the registry's order: renderers are what is asked about."""
     if method not in METHODS:
         return 0, 0, method
-    return (2 if METHODS[method].worker == OURS else 1), list(METHODS).index(method), method
+    return (2 if is_ours(method) else 1), list(METHODS).index(method), method
 
 
 def evaluate(record: Store, suite: Suite) -> Evaluation:

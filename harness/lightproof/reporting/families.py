@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from lightproof.renderers.registry import METHODS, OURS
+from lightproof.renderers.registry import METHODS, family, is_ours
 from lightproof.reporting.evaluation import Cell, Evaluation
 from lightproof.scene import Scene
 from lightproof.verdict import Outcome
@@ -52,13 +52,8 @@ def _standing(cell: Cell) -> tuple[float, ...]:
     return BEST_FIRST.index(cell.verdict.outcome), *(math.inf if time is None else time for time in times)
 
 
-def is_ours(method: str) -> bool:
-    """Whether a method is one of the in-house estimators, and no renderer."""
-    return method in METHODS and METHODS[method].worker == OURS
-
-
 def _name(method: str) -> str:
-    return OUR_NAME if is_ours(method) else method.partition("/")[0]
+    return OUR_NAME if is_ours(method) else family(method)
 
 
 def _rank(name: str, methods: list[str]) -> int:

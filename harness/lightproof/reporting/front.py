@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+from lightproof.renderers.registry import is_ours
 from lightproof.reporting.evaluation import Cell
-from lightproof.reporting.families import is_ours
 from lightproof.reporting.wording import percent, seconds
 
 ALL = "all methods"

@@ -10,6 +10,7 @@ from typing import Any
 
 import jinja2
 
+from lightproof.renderers.registry import family
 from lightproof.reporting import hard, hard_charts, hard_findings, hard_promises, hard_spread, sweeps
 from lightproof.reporting.colours import ColourMap
 from lightproof.reporting.evaluation import Evaluation
@@ -58,7 +59,7 @@ class HardPage:
     @property
     def naive(self) -> bool:
         """Whether the textbook's formulas are in the run."""
-        return any(method.partition("/")[0] == FOIL for method in self.methods)
+        return any(family(method) == FOIL for method in self.methods)
 
     @property
     def bar(self) -> str:

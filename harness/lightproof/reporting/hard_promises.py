@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lightproof.renderers.registry import METHODS, OURS
+from lightproof.renderers.registry import family, is_ours
 from lightproof.reporting.hard import Row, Square
 from lightproof.reporting.hard_deviation import ROUNDING
 from lightproof.reporting.hard_findings import BROKEN, SAID, absence
@@ -33,16 +33,12 @@ class Promise:
 def promises(rows: Sequence[Row]) -> list[Promise]:
     """Of our own methods, as far as the run has them."""
     ours = [square for row in rows for square in row.squares
-            if square.cell and square.method in METHODS and METHODS[square.method].worker == OURS and _name(square) != FOIL]
+            if square.cell and is_ours(square.method) and family(square.method) != FOIL]
     drawn = [square for square in ours if square.deviation and not square.deviation.certain
              and square.cell.final[0].precision == "float32"]
     exact = [square for row in rows for square in row.squares if square.method == "analytic"]
     found = (_exact(exact), _single(drawn), _alone(roundings(ours)), _light(ours), *_foil(rows))
     return [promise for promise in found if promise]
-
-
-def _name(square: Square) -> str:
-    return square.method.partition("/")[0]
 
 
 def _exact(exact: Sequence[Square]) -> Promise | None:

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from lightproof.estimators.rates import DOMAINS, GRIDS, POINTS, Rate
+from lightproof.renderers.registry import family, is_ours
 from lightproof.reporting import smoothness
 from lightproof.reporting.evaluation import Cell
-from lightproof.reporting.families import is_ours
 from lightproof.reporting.wording import number
 
 ROUNDING = 1e-6  # of the tolerance scale: a method whose first film is as exact has no error to fall but that of its arithmetic
@@ -66,7 +66,7 @@ def slopes(cells: Iterable[Cell]) -> list[Slope]:
 def expected(cell: Cell) -> Rate | None:
     """Theory's rate; where some of a film's elements lie at an edge, from theirs to that of the others. None for closed forms,
     for what has nothing to sample, and for a renderer whose points are not known to be independent."""
-    settings, name = cell.final[0].settings, cell.method.partition("/")[0]
+    settings, name = cell.final[0].settings, family(cell.method)
     if not is_ours(cell.method):
         return POINTS["independent"].point[0] if independent(settings) else None
     rates = GRIDS.get(name) or POINTS.get(settings.get("points", "independent"))
