@@ -28,6 +28,7 @@ FAST = {"contract", "reassoc", "nnan", "ninf", "nsz", "afn"}  # all but the reci
 strict = njit(fastmath=STRICT, error_model="numpy")
 inlined = njit(fastmath=STRICT, error_model="numpy", forceinline=True)  # strict, and part of the loop that calls it
 fast = njit(fastmath=FAST, error_model="numpy")
+exact = njit(error_model="numpy")
 
 INLINED = {"forceinline": True}  # of an overload: where the compiler sees fit to call it, a loop leaves the vector registers
 
@@ -81,3 +82,4 @@ def kernel(fastmath: bool | set[str]) -> Callable[[Callable], Callable]:
 
 fast_kernel = kernel(fastmath=FAST)
 strict_kernel = kernel(fastmath=STRICT)
+exact_kernel = kernel(fastmath=False)

@@ -1,4 +1,4 @@
-"""What the in-house estimators share: phases timed, elements spread over threads, sums turned into film and variance."""
+"""What the in-house estimators share: phases timed, elements spread over threads."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from lightproof.estimators.limits import extreme
+from lightproof.estimators.moments import variance_of_mean
 from lightproof.method import Method
 from lightproof.scene import Scene
 
@@ -55,7 +56,7 @@ class Estimator(Method):
 def sampled(add: Callable, size: int, samples: int, threads: int) -> tuple[np.ndarray, int, np.ndarray | None]:
     """Film, samples and variance of a kernel that follows rays and adds up values and their squares."""
     sums = spread(add, size, samples, 2, threads, tasks(size * samples, TRACED))
-    return sums[:, 0] / samples, samples, variance_of_mean(sums[:, 0], sums[:, 1], samples)
+    return sums[:, 0] / samples, samples, variance_of_mean(*sums.T, samples) if samples > 1 else None
 
 
 def tasks(samples: int, worthwhile: int) -> int:
@@ -96,10 +97,3 @@ def cuts(count: int, pieces: int) -> list[tuple[int, int]]:
 def workers(threads: int) -> ThreadPoolExecutor:
     """Threads that help the one that asks, and stay: starting them would take longer than a small film."""
     return ThreadPoolExecutor(threads - 1)
-
-
-def variance_of_mean(total: np.ndarray, square: np.ndarray, samples: int) -> np.ndarray | None:
-    """Variance of the mean of `samples` values from the sums of them and of their squares; one sample has none."""
-    if samples < 2:
-        return None
-    return np.maximum(square - total * total / samples, 0) / ((samples - 1) * samples)

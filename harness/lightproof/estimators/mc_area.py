@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import partial, reduce
 
 import numpy as np
 
@@ -50,16 +50,16 @@ class McArea(Sampling):
         counts = (max(1, round(samples * share)) for share in self.shares)
         drawn = [self.drawn(index, count, seed) for index, count in enumerate(counts)]
         films, counts, variances = zip(*drawn, strict=True)
-        variance = None if any(one is None for one in variances) else sum(variances)
-        peak = largest(self.peaks, np.array(counts) / sum(counts))
-        return Rendering(sum(films), sum(counts), variance, peak=peak)
+        taken = sum(counts)
+        variance = None if any(one is None for one in variances) else reduce(np.add, variances)
+        peak = largest(self.peaks, [count / taken for count in counts])
+        return Rendering(reduce(np.add, films), taken, variance, peak=peak)
 
     def drawn(self, index: int, samples: int, seed: int) -> tuple[np.ndarray, int, np.ndarray | None]:
         """Film (n,) of one piece alone, samples taken, and its variance (n,)."""
         points = self.points(samples, int(seed) * SEEDS + index)
-        pivots, totals, squares = self.view.factor * self.pieces[index].sums(self.view, points, self.models[index], self.threads)
-        variance = self.variance(totals, self.view.factor * squares, points.samples)
-        return (pivots + totals) / points.samples, points.samples, variance
+        film, variance = self.pieces[index].received(self.view, points, self.models[index], self.threads)
+        return film, points.samples, variance if self.varies(points.samples) else None
 
     def traced(self, samples: int, seed: int) -> Rendering:
         points = self.points(samples, seed)

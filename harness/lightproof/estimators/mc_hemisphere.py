@@ -38,13 +38,11 @@ class McHemisphere(Sampling):
         vanish: the covariance of two sums over N directions is minus the product of their means over N."""
         points = self.points(samples, seed)
         taken = points.samples
-        sums = np.array([self.view.factor * piece.sums(self.view, points, self.real(1), self.threads) for piece in self.pieces])
-        films = (sums[:, 0] + sums[:, 1]) / taken
-        own = [self.variance(totals, self.view.factor * squares, taken) for _, totals, squares in sums]
-        film = films.sum(axis=0)
-        if own[0] is None:
+        films, own = zip(*(piece.received(self.view, points, self.real(1), self.threads) for piece in self.pieces), strict=True)
+        film = sum(films)
+        if not self.varies(taken):
             return Rendering(film, taken)
-        shared = (film**2 - (films**2).sum(axis=0)) / (taken - 1)
+        shared = (film**2 - sum(one**2 for one in films)) / (taken - 1)
         return Rendering(film, taken, np.maximum(sum(own) - shared, 0))
 
     def traced(self, samples: int, seed: int) -> Rendering:

@@ -26,10 +26,12 @@ def peaks(view: View, sources: Sequence[object]) -> np.ndarray | None:
     return np.array(found) if found and not any(one is None for one in found) else None
 
 
-def largest(bounds: np.ndarray | None, shares: np.ndarray) -> np.ndarray | None:
-    """What one sample of a film can add at most (n,), where each source has a share of the samples (sources,); None where
-    the `bounds` on sources (sources, n) are not known."""
-    return None if bounds is None else (bounds / shares[:, None]).max(axis=0)
+def largest(bounds: np.ndarray | None, shares: Sequence[float]) -> np.ndarray | None:
+    """What one sample of a film can add at most (n,), where each source has a share of the samples (sources,), and a single one
+    all of them; None where the `bounds` on sources (sources, n) are not known."""
+    if bounds is None:
+        return None
+    return bounds[0] if len(bounds) == 1 else (bounds / np.array(shares)[:, None]).max(axis=0)
 
 
 def peak(view: View, source: object) -> np.ndarray | None:

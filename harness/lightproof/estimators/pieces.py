@@ -15,6 +15,7 @@ from lightproof.estimators.estimator import spread, tasks
 from lightproof.estimators.kernel import estimate
 from lightproof.estimators.lamps import Beam, Glow, Lamp, Point
 from lightproof.estimators.meeting import Cosine, Uniform
+from lightproof.estimators.moments import moments
 from lightproof.estimators.parallel import Between, Level, levelled
 from lightproof.estimators.points import BLOCK, Grid, Random
 from lightproof.estimators.shapes import Flat, Sphere
@@ -23,7 +24,6 @@ from lightproof.scene import Scene
 
 WORTHWHILE = 2**17  # samples: a task takes longer than to hand it to a thread
 FEW = 3  # blockers that are worth a kernel of their own
-LARGEST = float(np.finfo(np.float32).max)
 REACH = 1e4  # sizes of the scene: the length of a shadow ray along a beam or to the sky
 
 Source = Lamp | Point | Beam | Uniform | Cosine | Aim
@@ -42,18 +42,16 @@ class Piece:
         """What its share of samples goes by."""
         return getattr(self.lamp, "power", self.lamp.strength)
 
-    def sums(self, view: View, points: Random | Grid, model: np.floating, threads: int) -> np.ndarray:
-        """Sums (3, n) over the points: of a pivot, of what the values are beyond it, and of that squared."""
+    def received(self, view: View, points: Random | Grid, model: np.floating, threads: int) -> tuple[np.ndarray, np.ndarray]:
+        """Film (n,) of this piece alone, and its variance (n,) if points do not depend on one another."""
 
         def add(first: int, last: int, blocks: tuple[int, int], out: np.ndarray) -> None:
             slopes = None if view.slopes is None else view.slopes[first:last]
             estimate(self.source, self.blockers, view.receivers[first:last], slopes, first, points, blocks, model, out)
 
         size = len(view.receivers)
-        sums = spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks(size * points.samples, WORTHWHILE)).T
-        np.maximum(sums[1], -sums[0], out=sums[1])  # no value is below 0: what would be is rounding
-        sums[2, np.isinf(sums[2])] = LARGEST  # squares beyond float32: their sum is no less
-        return sums
+        sums = spread(add, size, -(-points.samples // BLOCK), 3, threads, tasks(size * points.samples, WORTHWHILE))
+        return moments(sums, points.samples, view.factor)
 
 
 def aimed(scene: Scene, view: View, aim: Callable[[Glow], Source] = lamps.lamp) -> list[Piece]:

@@ -34,8 +34,7 @@ class Riemann(Composed):
 
     def composed(self, samples: int, seed: int) -> Rendering:
         cut = self.grid(samples)
-        sums = [piece.sums(self.view, cut, self.real(1), self.threads) for piece in self.pieces]
-        film = self.view.factor * sum(pivots + totals for pivots, totals, _ in sums) / cut.samples
+        film = sum(piece.received(self.view, cut, self.real(1), self.threads)[0] for piece in self.pieces)
         return Rendering(film, cut.samples, peak=largest(self.peaks, np.ones(len(self.pieces))))
 
     def traced(self, samples: int, seed: int) -> Rendering:

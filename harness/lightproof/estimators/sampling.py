@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-import numpy as np
-
 from lightproof.estimators.composed import Composed
-from lightproof.estimators.estimator import variance_of_mean
 from lightproof.estimators.options import SAMPLING, Choices, chosen
 from lightproof.estimators.points import Random
 from lightproof.scene import Scene
@@ -42,6 +39,6 @@ class Sampling(Composed):
             return None
         return "its film needs rays, which this configuration does not follow; path can"
 
-    def variance(self, totals: np.ndarray, squares: np.ndarray, samples: int) -> np.ndarray | None:
-        """Variance (n,) of the mean from sums of values and of their squares; unknown where points depend on one another."""
-        return variance_of_mean(totals, squares, samples) if self.points is Random else None
+    def varies(self, samples: int) -> bool:
+        """Whether a film of so many samples tells its variance: not where points depend on one another."""
+        return self.points is Random and samples > 1
